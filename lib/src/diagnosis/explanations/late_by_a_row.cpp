@@ -19,19 +19,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What the positions change by when each is taken from the row that is `later` rows on.
-std::vector<Vector3d> from_another_row(const Trajectory& rows, int later) {
-  std::vector<Vector3d> added;
-  added.reserve(rows.size());
+/// What the position of a row changes by when it is taken from the row that is `later` rows on.
+Vector3d from_another_row(const Trajectory& rows, std::size_t row, int later) {
   const auto last = static_cast<std::ptrdiff_t>(rows.size()) - 1;
-  for (std::ptrdiff_t i = 0; i <= last; ++i) {
-    // at the end the step is that of the row before
-    const std::ptrdiff_t from =
-        std::clamp<std::ptrdiff_t>(i, later < 0 ? -later : 0, later > 0 ? last - later : last);
-    added.push_back(position_of(rows[static_cast<std::size_t>(from + later)].pose) -
-                    position_of(rows[static_cast<std::size_t>(from)].pose));
-  }
-  return added;
+  // at the end the step is that of the row before
+  const auto from = std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(row), later < 0 ? -later : 0,
+                                               later > 0 ? last - later : last);
+  return position_of(rows[static_cast<std::size_t>(from + later)].pose) -
+         position_of(rows[static_cast<std::size_t>(from)].pose);
 }
 
 /// Whether the number of rows that suits the motions best is one, and not none.
@@ -65,7 +60,8 @@ std::vector<LateByARow> late_by_a_row(const Evidence& evidence, const DiagnosisO
     const double seconds =
         to_seconds(rows.back().time_us - rows.front().time_us) / static_cast<double>(rows.size() - 1);
     for (const int later : {1, -1}) {
-      const std::vector<Vector3d> changes = changes_of_rows(evidence, side, from_another_row(rows, later));
+      const std::vector<Vector3d> changes = changes_of_rows(
+          evidence, side, [&](std::size_t row) { return from_another_row(rows, row, later); });
       if (!is_one(given, changes, side, late)) continue;
       LateByARow here{side, later, seconds, 0, with_changes(given, changes, side, options)};
       here.gain = -loss_in_metres(given, here.explained);

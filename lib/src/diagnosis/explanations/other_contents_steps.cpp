@@ -29,18 +29,16 @@ constexpr std::array<double, 3> parts_of_mistakes{1, 0.5, -0.5};
 /// What the motions change by where each step is turned back by a part of the turn of its row.
 Changes changes_of(const Evidence& evidence, Side side, double part) {
   const Trajectory& rows = rows_of(evidence, side);
-  Changes sums;
-  sums.reserve(rows.size());
-  sums.emplace_back(Vector3d::Zero());
+  Vector3d sum = Vector3d::Zero();
   Pose before = to_pose(rows.front().pose);
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    const Pose here = to_pose(rows[i].pose);
+  return changes_of_rows(evidence, side, [&](std::size_t row) {
+    const Pose here = to_pose(rows[row].pose);
     const Vector3d step = here.translation - before.translation;
     const Vector3d turn = rotation_log(here.rotation * before.rotation.conjugate());
-    sums.push_back(sums.back() + rotation_exp(-part * turn) * step - step);
+    if (row > 0) sum += rotation_exp(-part * turn) * step - step;
     before = here;
-  }
-  return changes_of_rows(evidence, side, sums);
+    return sum;
+  });
 }
 
 bool fits_late_positions_better(const Evidence& evidence, const Explained& steps,

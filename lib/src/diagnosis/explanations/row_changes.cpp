@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <utility>
+#include <vector>
 
 #include "diagnosis/motions/changed_motions.hpp"
 #include "diagnosis/motions/stillest_point.hpp"
@@ -17,23 +17,34 @@ namespace {
 using Eigen::Vector3d;
 using Changes = std::vector<Vector3d>;
 
-/// What is added to the positions, between the rows too.
+/// What is added to the positions at times between the rows, taken from a pass over all rows: of a long drive
+/// the few thousand times are held, never the rows.
 class Added {
  public:
-  Added(const Changes& added, Times times) : times_(std::move(times)), added_(added) {}
+  /// times: of the rows, that have two at least; to be asked for at ascending ones.
+  explicit Added(const Times& times) : times_(times) {}
 
-  /// Times ascend from call to call.
-  Vector3d at(double time) {
-    while (row_ + 2 < added_.size() && times_[row_ + 1] <= time) ++row_;
+  void ask(double time) {
+    while (row_ + 2 < times_.size() && times_[row_ + 1] <= time) ++row_;
     const double from = times_[row_], to = times_[row_ + 1];
-    const double way = to > from ? std::clamp((time - from) / (to - from), 0.0, 1.0) : 0;
-    return added_[row_] + way * (added_[row_ + 1] - added_[row_]);
+    asked_.push_back({row_, to > from ? std::clamp((time - from) / (to - from), 0.0, 1.0) : 0});
+  }
+  /// What is added to a row and to the next one. To be called in order, for all rows but the last.
+  void pass(std::size_t row, const Vector3d& here, const Vector3d& next) {
+    while (at.size() < asked_.size() && asked_[at.size()].row == row)
+      at.push_back(here + asked_[at.size()].way * (next - here));
   }
 
+  Changes at;  ///< of each time asked for
+
  private:
+  struct Asked {
+    std::size_t row;
+    double way;  ///< part of that to the next row
+  };
   Times times_;
-  const Changes& added_;
   std::size_t row_ = 0;
+  std::vector<Asked> asked_;
 };
 
 }  // namespace
@@ -42,17 +53,29 @@ const Trajectory& rows_of(const Evidence& evidence, Side side) {
   return side == Side::a ? evidence.streams.a : evidence.streams.b;
 }
 
-std::vector<Vector3d> changes_of_rows(const Evidence& evidence, Side side, const Changes& added) {
+std::vector<Vector3d> changes_of_rows(const Evidence& evidence, Side side, const AddedToRow& added) {
   const Motions& motions = evidence.given.explained.motions;
   const ClockModel clock = side == Side::a ? ClockModel{} : evidence.clock;
   const Times times(rows_of(evidence, side), evidence.streams.a.front().time_us, clock);
-  Added begin(added, times), end = begin;
+  const std::vector<std::size_t> begins = begins_of(evidence.instants, motions);
   const auto span = static_cast<std::size_t>(motions.stride);
+  Added begin(times), end(times);
+  for (const std::size_t i : begins) {
+    begin.ask(evidence.instants.time(i));
+    end.ask(evidence.instants.time(i + span));
+  }
+  Vector3d here = added(0);
+  for (std::size_t row = 1; row < times.size(); ++row) {
+    const Vector3d next = added(row);
+    begin.pass(row - 1, here, next);
+    end.pass(row - 1, here, next);
+    here = next;
+  }
   Changes changes;
-  for (const std::size_t i : begins_of(evidence.instants, motions)) {
-    const PosePair poses = evidence.instants.at(i);
+  for (std::size_t k = 0; k < begins.size(); ++k) {
+    const PosePair poses = evidence.instants.at(begins[k]);
     changes.push_back(rotation_of(side == Side::a ? poses.a : poses.b).transpose() *
-                      (end.at(evidence.instants.time(i + span)) - begin.at(evidence.instants.time(i))));
+                      (end.at[k] - begin.at[k]));
   }
   return changes;
 }

@@ -3,6 +3,8 @@
 // Motions where the positions of one stream change by what its rows say: a number times what each row adds.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "diagnosis/explanations/explanations.hpp"
@@ -12,10 +14,11 @@ namespace egocal::detail {
 /// The poses of one stream as its file has them.
 const Trajectory& rows_of(const Evidence& evidence, Side side);
 
-/// What each motion as given changes by, in the frame of its begin [m]. added: to the position of each row,
-/// in the stream's world.
-std::vector<Eigen::Vector3d> changes_of_rows(const Evidence& evidence, Side side,
-                                             const std::vector<Eigen::Vector3d>& added);
+/// What is added to the position of a row, in the stream's world [m]. Called for all rows, in order.
+using AddedToRow = std::function<Eigen::Vector3d(std::size_t row)>;
+
+/// What each motion as given changes by, in the frame of its begin [m], of a stream of two rows at least.
+std::vector<Eigen::Vector3d> changes_of_rows(const Evidence& evidence, Side side, const AddedToRow& added);
 
 /// Of these changes, the multiple that suits the motions best.
 double best_multiple(const Explained& given, const std::vector<Eigen::Vector3d>& changes, Side side);

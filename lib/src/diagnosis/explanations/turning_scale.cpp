@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +12,8 @@
 
 #include "diagnosis/explanations/common_mistakes.hpp"
 #include "diagnosis/explanations/turning_of_steps.hpp"
+#include "diagnosis/explanations/vector_lengths.hpp"
+#include "diagnosis/motions/at_ends.hpp"
 #include "diagnosis/motions/changed_motions.hpp"
 #include "diagnosis/motions/stillest_point.hpp"
 #include "diagnosis/words/wording.hpp"
@@ -38,27 +40,34 @@ struct AboutAxis {
   std::vector<End> begins, ends;
 };
 
-AboutAxis turning_of(const Instants& instants, const Motions& motions, Side side) {
-  std::vector<Matrix3d> orientations;
-  std::vector<Vector3d> turns;
-  Matrix3d squares = Matrix3d::Zero();
+/// Calls each(instant, orientation, rotation vector from the orientation before, in the stream's world
+/// [rad]).
+template <typename Each>
+void for_each_turn(const Instants& instants, Side side, const Each& each) {
+  Matrix3d last = Matrix3d::Identity();
   for (std::size_t i = 0; i < instants.size(); ++i) {
     const PosePair poses = instants.at(i);
-    orientations.push_back(rotation_of(side == Side::a ? poses.a : poses.b));
-    if (i == 0) continue;
-    turns.push_back(rotation_log(Rotation(orientations[i] * orientations[i - 1].transpose())));
-    squares += turns.back() * turns.back().transpose();
+    const Matrix3d R = rotation_of(side == Side::a ? poses.a : poses.b);
+    each(i, R, i == 0 ? Vector3d(Vector3d::Zero()) : rotation_log(Rotation(R * last.transpose())));
+    last = R;
   }
-  AboutAxis result;
-  result.axis = symmetric_eigen<3>(squares).vectors.col(2);
-  std::vector<double> turned{0};
-  for (const Vector3d& turn : turns) turned.push_back(turned.back() + result.axis.dot(turn));
-  const auto span = static_cast<std::size_t>(motions.stride);
-  for (const std::size_t i : begins_of(instants, motions)) {
-    result.begins.push_back({orientations[i], turned[i]});
-    result.ends.push_back({orientations[i + span], turned[i + span]});
-  }
-  return result;
+}
+
+AboutAxis turning_of(const Instants& instants, const Motions& motions, Side side) {
+  Matrix3d squares = Matrix3d::Zero();
+  for_each_turn(instants, side, [&](std::size_t, const Matrix3d&, const Vector3d& turn) {
+    squares += turn * turn.transpose();
+  });
+  const Vector3d axis = symmetric_eigen<3>(squares).vectors.col(2);
+  const std::vector<std::size_t> begins = begins_of(instants, motions);
+  AtEnds<End> ends(begins, static_cast<std::size_t>(motions.stride));
+  double turned = 0;
+  // the turns are worked out again, as those of a long drive take much memory
+  for_each_turn(instants, side, [&](std::size_t i, const Matrix3d& R, const Vector3d& turn) {
+    turned += axis.dot(turn);
+    ends.pass(i, {R, turned});
+  });
+  return {axis, std::move(ends.begins), std::move(ends.ends)};
 }
 
 /// The motions with a part of the turning of one stream taken off. right_positions: those of the file, else
@@ -135,85 +144,6 @@ Scaled fitted(const Explained& given, const AboutAxis& turning, Side side, doubl
   return result;
 }
 
-/// Rotation vectors of a stream over a factor, along the way that they went: a file holds the turn of a
-/// vector longer than half a turn from the other side. begins_with_more: whether the first one is.
-std::vector<Matrix3d> with_shorter_vectors(const Instants& instants, Side side, double factor,
-                                           bool begins_with_more) {
-  constexpr double pi = std::numbers::pi;
-  std::vector<Matrix3d> result;
-  result.reserve(instants.size());
-  Matrix3d last = Matrix3d::Identity();
-  for (std::size_t i = 0; i < instants.size(); ++i) {
-    const PosePair poses = instants.at(i);
-    const Vector3d vector = rotation_log(to_pose(side == Side::a ? poses.a : poses.b).rotation);
-    const double angle = vector.norm();
-    Matrix3d best = rotation_exp(vector / factor).toRotationMatrix();
-    if (factor > 1 && angle > 0) {
-      // the same rotation the other way round
-      const Matrix3d other = rotation_exp(vector * (1 - 2 * pi / angle) / factor).toRotationMatrix();
-      if (i == 0 ? begins_with_more : (other - last).squaredNorm() < (best - last).squaredNorm())
-        best = other;
-    }
-    result.push_back(last = best);
-  }
-  return result;
-}
-
-Explained explained_by_vectors(const Instants& instants, const Explained& given, Side side,
-                               const std::vector<Matrix3d>& right, const DiagnosisOptions& options) {
-  const auto span = static_cast<std::size_t>(given.motions.stride);
-  const std::vector<std::size_t> begins = begins_of(instants, given.motions);
-  Explained result{given.motions, {}};
-  for (std::size_t i = 0; i < begins.size(); ++i) {
-    Motion& motion = result.motions.all[i];
-    const PosePair poses = instants.at(begins[i]);
-    const Matrix3d &begin = right[begins[i]], &end = right[begins[i] + span];
-    const Vector3d t = begin.transpose() * (rotation_of(side == Side::a ? poses.a : poses.b) *
-                                            (side == Side::a ? motion.t_a : motion.t_b));
-    const Rotation rotation(Matrix3d(begin.transpose() * end));
-    set_turned_motion(motion, side, rotation, t);
-  }
-  result.fit = robust_fit(result.motions, options.fit);
-  return result;
-}
-
-/// Rotation vectors that were read as those of another length: whole or half angles, degrees.
-std::optional<Finding> vectors_of_another_length(const Instants& instants, const Explained& given,
-                                                 const DiagnosisOptions& options,
-                                                 const TurningScaleOptions& turning) {
-  std::optional<Finding> best;
-  struct Length {
-    double factor;
-    bool begins_with_more;
-  };
-  constexpr double radians_a_degree = std::numbers::pi / 180;
-  for (const Side side : {Side::b, Side::a})
-    for (const auto& [factor, begins_with_more] :
-         {Length{2, false}, Length{2, true}, Length{0.5, false}, Length{radians_a_degree, false}}) {
-      const std::vector<Matrix3d> right = with_shorter_vectors(instants, side, factor, begins_with_more);
-      const Explained here = explained_by_vectors(instants, given, side, right, options);
-      const Comparison comparison = compare(given, here);
-      if (!explains(here, options) || !better(comparison, turning.gain_of_vectors, options) ||
-          (best && best->improvement > std::exp(comparison.gain)))
-        continue;
-      const char which = side == Side::a ? 'a' : 'b';
-      best.emplace();
-      best->code = std::string("turning_scale_") + which;
-      best->certain = true;
-      best->improvement = std::exp(comparison.gain);
-      best->T_a_b = to_pose(here.fit.T);
-      best->value = factor;
-      say(*best,
-          format("The rotation vectors of %s, from its world, are %.4g times as long as they should be: the "
-                 "squared residuals are %.3g times smaller without that.",
-                 mark(which), factor, best->improvement),
-          format("Correct the conversion of the rotations of %s: a quaternion has half the angle of its "
-                 "rotation vector, in radians.",
-                 mark(which)));
-    }
-  return best;
-}
-
 Finding worded(const Scaled& scaled) {
   const char which = scaled.side == Side::a ? 'a' : 'b';
   Finding finding;
@@ -236,7 +166,8 @@ Finding worded(const Scaled& scaled) {
 std::vector<Finding> turning_scale(const Instants& instants, const Explained& given,
                                    const DiagnosisOptions& options, const TurningScaleOptions& turning) {
   if (instants.size() < 3 || given.motions.all.size() < options.motions.least) return {};
-  if (std::optional<Finding> vectors = vectors_of_another_length(instants, given, options, turning))
+  if (std::optional<Finding> vectors =
+          vectors_of_another_length(instants, given, options, turning.gain_of_vectors))
     return {*std::move(vectors)};
   std::vector<Scaled> best;  // of each stream
   for (const Side side : {Side::b, Side::a}) {
