@@ -41,7 +41,7 @@ double loss_of_parts(const Explained& given, const Motions& inverted, const std:
 /// Whether quarters of the drive but one, in which the mounting may have changed, fit as well inverted. An
 /// odometry that drifts does not even there; a first look, as moves take as long as all else to find.
 bool quarters_fit(const Explained& given, const Motions& inverted, const DiagnosisOptions& options) {
-  constexpr std::size_t quarters = 4;
+  constexpr std::size_t quarters = 4;  // least in which one that holds the move leaves most of the drive
   const std::size_t n = inverted.all.size();
   if (n < quarters * options.motions.least) return false;
   std::size_t worse = 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -45,6 +46,33 @@ bool counts(const Evidence& evidence, const LateByARow& found, const DiagnosisOp
          (here.translation - given.translation).norm() >= late.least_change * options.tolerance_translation;
 }
 
+/// Usual duration of a row [s].
+double seconds_of(const Trajectory& rows) {
+  return to_seconds(rows.back().time_us - rows.front().time_us) / static_cast<double>(rows.size() - 1);
+}
+
+std::vector<Vector3d> changes_by_a_row(const Evidence& evidence, Side side, int later) {
+  const Trajectory& rows = rows_of(evidence, side);
+  return changes_of_rows(evidence, side, [&](std::size_t row) { return from_another_row(rows, row, later); });
+}
+
+/// The positions of the other stream early where those of this one are late, by what suits them best.
+std::optional<LateByARow> by_other_stream(const Evidence& evidence, const LateByARow& found,
+                                          const DiagnosisOptions& options) {
+  const Explained& given = evidence.given.explained;
+  const Side side = found.side == Side::a ? Side::b : Side::a;
+  const int later = found.rows > 0 ? -1 : 1;
+  std::vector<Vector3d> changes = changes_by_a_row(evidence, side, later);
+  const double number = best_multiple(given, changes, side);
+  if (!(number > 0)) return std::nullopt;
+  for (Vector3d& change : changes) change *= number;
+  LateByARow other{side, later * number, seconds_of(rows_of(evidence, side)), 0,
+                   with_changes(given, changes, side, options)};
+  other.gain = -loss_in_metres(given, other.explained);
+  if (!explains(other.explained, options) || other.gain < found.gain - options.alike) return std::nullopt;
+  return other;
+}
+
 }  // namespace
 
 std::vector<LateByARow> late_by_a_row(const Evidence& evidence, const DiagnosisOptions& options,
@@ -57,19 +85,21 @@ std::vector<LateByARow> late_by_a_row(const Evidence& evidence, const DiagnosisO
     if (rows.size() < least_rows ||
         way_in_a_row(evidence, side) < late.least_change * options.tolerance_translation)
       continue;
-    const double seconds =
-        to_seconds(rows.back().time_us - rows.front().time_us) / static_cast<double>(rows.size() - 1);
     for (const int later : {1, -1}) {
-      const std::vector<Vector3d> changes = changes_of_rows(
-          evidence, side, [&](std::size_t row) { return from_another_row(rows, row, later); });
+      const std::vector<Vector3d> changes = changes_by_a_row(evidence, side, later);
       if (!is_one(given, changes, side, late)) continue;
-      LateByARow here{side, later, seconds, 0, with_changes(given, changes, side, options)};
+      LateByARow here{side, static_cast<double>(later), seconds_of(rows), 0,
+                      with_changes(given, changes, side, options)};
       here.gain = -loss_in_metres(given, here.explained);
       if (counts(evidence, here, options, late)) found.push_back(std::move(here));
     }
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const LateByARow& x, const LateByARow& y) { return x.gain > y.gain; });
+  const bool one_stream = !found.empty() && found.front().side == found.back().side;
+  if (one_stream)
+    if (std::optional<LateByARow> other = by_other_stream(evidence, found.front(), options))
+      found.insert(found.begin() + 1, *std::move(other));
   return found;
 }
 
@@ -86,7 +116,9 @@ std::vector<Finding> worded_rows(const std::vector<LateByARow>& found, const Evi
     finding.T_a_b = to_pose(one.explained.fit.T);
     finding.value = one.rows * one.seconds;
     say(finding,
-        format("The positions of %s are one row (%.3g s) %s than its rotations", mark(which), one.seconds,
+        format("The positions of %s are %s %s than its rotations", mark(which),
+               std::abs(one.rows) == 1 ? format("one row (%.3g s)", one.seconds).c_str()
+                                       : format("%.3g s", std::abs(*finding.value)).c_str(),
                one.rows > 0 ? "later" : "earlier"),
         format("Write position and rotation of the same time into each row of %s.", mark(which)),
         format(": the squared residuals of the translations are %.3g times smaller without that.",

@@ -25,13 +25,15 @@ struct LateByARowOptions {
 /// Positions of one stream that belong to the row before or after.
 struct LateByARow {
   Side side = Side::b;
-  int rows = 1;           ///< > 0: they are late
+  double rows = 1;        ///< > 0: they are late; 1 or -1, but for the other stream what suits it best
   double seconds = 0;     ///< usual duration of a row
   double gain = 0;        ///< mean logarithm of squared residuals of the translations, > 0 for it
   Explained explained{};  ///< with the positions of the right rows
 };
 
-/// Those that the drive shows, the one that fits best first.
+/// Those that the drive shows, the one that fits best first. Late positions of one stream are those of the
+/// other one early, but for what the lever arm turns meanwhile: that one is there as well where it fits about
+/// as well (DiagnosisOptions::alike).
 std::vector<LateByARow> late_by_a_row(const Evidence& evidence, const DiagnosisOptions& options,
                                       const LateByARowOptions& late = {});
 
