@@ -48,8 +48,9 @@ TEST(InvertedAndMoved, AKnockIsNamedWhereBothStreamsAreInvertedByMistake) {
     EXPECT_LT(extrinsic_error(still.T, before).rotation, 0.01) << seed;
     const Calibration right = calibrate(still.a, still.b);
     EXPECT_LT(right.verdict, Verdict::doubtful) << right.reason;
-    if (const Finding* const usual = find(right, "inverted_both"))
-      EXPECT_EQ(usual->message.find("the mounting changed"), std::string::npos) << usual->message;
+    const Finding* const usual = find(right, "inverted_both");
+    EXPECT_TRUE(usual == nullptr || usual->message.find("the mounting changed") == std::string::npos)
+        << usual->message;
   }
 }
 

@@ -9,10 +9,10 @@
 #include <cstdlib>
 #include <new>
 
+#include "../support/simulated_drive.hpp"
 #include "diagnosis/explanations/turning_scale.hpp"
 #include "diagnosis/motions/motions.hpp"
 #include "diagnosis/motions/robust_fit.hpp"
-#include "support/simulated_drive.hpp"
 
 namespace {
 std::atomic<std::ptrdiff_t> live{0}, most{0};  // [bytes]

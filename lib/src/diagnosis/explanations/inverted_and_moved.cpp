@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
+#include "diagnosis/explanations/forward.hpp"
 #include "diagnosis/mount/in_parts.hpp"
 #include "diagnosis/mount/mount.hpp"
 #include "diagnosis/words/wording.hpp"
@@ -61,6 +62,11 @@ std::optional<Finding> inverted_and_moved(const Evidence& evidence, const Answer
   inverted.invert = true;
   const Motions motions = motions_of(evidence.instants, inverted, inverted, evidence.stride,
                                      options.motions.most, options.motions);
+  // what travels forward, or along one line, as given alone is not inverted (as in both_inverted())
+  const Heading as_given = heading(given.motions), as_inverted = heading(motions);
+  if ((forward(as_given, options.heading) && !forward(as_inverted, options.heading)) ||
+      (along_one_line(as_given, options.heading) && !along_one_line(as_inverted, options.heading)))
+    return std::nullopt;
   if (motions.all.size() != given.motions.all.size() || !quarters_fit(given, motions, options))
     return std::nullopt;
   const std::vector<Finding> moves = moved_mount(evidence.instants, answered, options, inverted).findings;

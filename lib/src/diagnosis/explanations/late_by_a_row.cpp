@@ -94,12 +94,12 @@ std::vector<LateByARow> late_by_a_row(const Evidence& evidence, const DiagnosisO
       if (counts(evidence, here, options, late)) found.push_back(std::move(here));
     }
   }
-  std::stable_sort(found.begin(), found.end(),
-                   [](const LateByARow& x, const LateByARow& y) { return x.gain > y.gain; });
-  const bool one_stream = !found.empty() && found.front().side == found.back().side;
-  if (one_stream)
+  const auto fits_better = [](const LateByARow& x, const LateByARow& y) { return x.gain > y.gain; };
+  std::stable_sort(found.begin(), found.end(), fits_better);
+  if (!found.empty() && found.front().side == found.back().side)
     if (std::optional<LateByARow> other = by_other_stream(evidence, found.front(), options))
-      found.insert(found.begin() + 1, *std::move(other));
+      found.push_back(*std::move(other));
+  std::stable_sort(found.begin(), found.end(), fits_better);
   return found;
 }
 
