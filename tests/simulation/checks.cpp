@@ -176,7 +176,7 @@ void Checks::answer_sent(const Process& from, const std::string& channel, bus::B
     fail('h', from.spec().name + " answers although it is paused");
 }
 
-/// What is off by this much is not good: as the study of mistakes has it (docs/trust.md).
+/// What is off by this much is not good: as the study of mistakes has it (docs/trust_measured.md).
 constexpr double off_rotation = 1 * std::numbers::pi / 180;  // [rad]
 constexpr double off_translation = 0.6;                      // [m]
 

@@ -200,7 +200,8 @@ constexpr double part_of_own = 0.3;
 
 /// Of each direction, the larger of two: of_fading(), and the sum of the correlations of near blocks, as
 /// errors need not fade like that. Where blocks touch, most of what single directions and chance show is
-/// what the blocks share, so both count less.
+/// what the blocks share, so both count as far as they do not: measured, not derived (docs/accuracy.md,
+/// "Noise that lasts").
 Vector6d of_memory(const Jackknife& single, double overlap, const ObservabilityOptions& options) {
   const Sharing sharing(overlap);
   const double blocks = single.mean_equal_blocks(options.least_equal_blocks);

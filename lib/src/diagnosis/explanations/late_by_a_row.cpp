@@ -58,13 +58,14 @@ std::vector<Vector3d> changes_by_a_row(const Evidence& evidence, Side side, int 
 
 /// The positions of the other stream early where those of this one are late, by what suits them best.
 std::optional<LateByARow> by_other_stream(const Evidence& evidence, const LateByARow& found,
-                                          const DiagnosisOptions& options) {
+                                          const DiagnosisOptions& options, double near) {
   const Explained& given = evidence.given.explained;
   const Side side = found.side == Side::a ? Side::b : Side::a;
   const int later = found.rows > 0 ? -1 : 1;
   std::vector<Vector3d> changes = changes_by_a_row(evidence, side, later);
-  const double number = best_multiple(given, changes, side);
+  double number = best_multiple(given, changes, side);
   if (!(number > 0)) return std::nullopt;
+  if (std::abs(number - 1) < near) number = 1;  // in words, the round number would be the likelier one
   for (Vector3d& change : changes) change *= number;
   LateByARow other{side, later * number, seconds_of(rows_of(evidence, side)), 0,
                    with_changes(given, changes, side, options)};
@@ -97,7 +98,7 @@ std::vector<LateByARow> late_by_a_row(const Evidence& evidence, const DiagnosisO
   const auto fits_better = [](const LateByARow& x, const LateByARow& y) { return x.gain > y.gain; };
   std::stable_sort(found.begin(), found.end(), fits_better);
   if (!found.empty() && found.front().side == found.back().side)
-    if (std::optional<LateByARow> other = by_other_stream(evidence, found.front(), options))
+    if (std::optional<LateByARow> other = by_other_stream(evidence, found.front(), options, late.near))
       found.push_back(*std::move(other));
   std::stable_sort(found.begin(), found.end(), fits_better);
   return found;
