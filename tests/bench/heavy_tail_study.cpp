@@ -214,7 +214,7 @@ int main(int argc, char** argv) {
   const Streams streams = testing::kitti_asynchronous();
   const Steps by_camera = steps_of(streams, Side::b), by_lidar = steps_of(streams, Side::a);
   bench::Table table{"heavy-tails",
-                     {{"interpolated", "error", "of x, y, z", "standard deviation of x, y, z, spans left out",
+                     {{"interpolated", "error", "of x, y, z", "standard deviation of x, y, z, spans omitted",
                        "by the curvature of the likelihood"}}};
   bench::Table profile{"profile",
                        {{"interpolated", "x, y, z at the truth, each alone", "z 10 cm lower, higher",

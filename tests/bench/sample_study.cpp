@@ -112,7 +112,8 @@ double milliseconds(std::size_t n, std::size_t repeats, bool diagnosis) {
   return quantile(times, 0.5);
 }
 
-/// Trials in which exactly the wrong samples were omitted and the answer is within 1 deg and 2 cm.
+/// Trials in which exactly the wrong samples were omitted and no direction of the answer is off by more than
+/// six stated standard deviations.
 std::size_t found_wrong(const ArmSamples& what, std::size_t trials, std::uint64_t seed,
                         const SampleOptions& options) {
   std::size_t right = 0;
@@ -121,8 +122,11 @@ std::size_t found_wrong(const ArmSamples& what, std::size_t trials, std::uint64_
     const SimulatedSamples drawn = testing::simulate_arm(what, random);
     const SampleCalibration found = calibrate_samples(drawn.samples, options);
     const Eigen::Matrix<double, 6, 1> off = deviation(to_pose(drawn.X), found.calibration.T_a_b);
-    constexpr double most_off = 0.02, most_turned = 0.0175;  // [m], [rad]
-    bool same = off.head<3>().norm() < most_off && off.tail<3>().norm() < most_turned;
+    constexpr double most_sigmas = 6;  // chance, where what is stated is right
+    bool same = true;
+    for (int k = 0; k < 6; ++k)
+      same = same && std::abs(off[k]) <=
+                         most_sigmas * found.calibration.observability.stddev[static_cast<std::size_t>(k)];
     for (std::size_t i = 0; i < drawn.wrong.size(); ++i)
       same = same && found.residuals[i].wrong == drawn.wrong[i];
     right += same ? 1 : 0;

@@ -148,6 +148,7 @@ std::optional<Attenuation> find_attenuation_in_plane(const Problem& problem,
   const double translation = stddev.head<3>().norm(), rotation = stddev.tail<3>().norm();
   result.pull = std::max(pull.head<3>().norm() / translation, pull.tail<3>().norm() / rotation);
   if (!(result.pull > options.least_pull) || !std::isfinite(result.pull)) return std::nullopt;
+  if (!(pull.tail<3>().norm() < options.most_turn)) return std::nullopt;
   const Vector6d wider = standard_deviations(*corrected, after, axes);
   if (!(wider.head<3>().norm() < options.most_loss * translation) ||
       !(wider.tail<3>().norm() < options.most_loss * rotation))
@@ -166,6 +167,7 @@ std::optional<Attenuation> pays_together(const Problem& problem, const DualQuate
   const Solution without = solve_dual(Q);
   if (without.status != SolverStatus::converged) return std::nullopt;
   const Vector6d pull = detail::frame_a_difference(q, without.q).cwiseAbs();
+  if (!(pull.tail<3>().norm() < options.most_turn)) return std::nullopt;
   const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   const Vector6d stddev = standard_deviations(problem, q, axes);
   const auto seen = observable_directions(problem, cost_matrix(problem), q, ErrorCorrelation::correlated);

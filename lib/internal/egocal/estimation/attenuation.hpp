@@ -29,6 +29,10 @@ struct AttenuationOptions {
   /// becomes more than this many times as large: twice the variance. Study: docs/method.md, "Errors in
   /// variables".
   double most_loss = std::numbers::sqrt2;
+  /// What it may turn the answer by, at most [rad]; beyond, the corrected cost has another minimum. In slow
+  /// drives of 100 motions with noise of a tenth (tests/lib/test_selection.cpp) those are 20 to 150 degrees
+  /// away, corrections of real drives and of the public benchmark turn by less than one.
+  double most_turn = 0.35;
   /// The noise that is left along the rotation itself, in multiples of the least that keeps D positive
   /// semidefinite; and the factor by which more is left until Q is positive definite.
   double reserve = 4;

@@ -70,8 +70,26 @@ std::optional<LateByARow> by_other_stream(const Evidence& evidence, const LateBy
   LateByARow other{side, later * number, seconds_of(rows_of(evidence, side)), 0,
                    with_changes(given, changes, side, options)};
   other.gain = -loss_in_metres(given, other.explained);
-  if (!explains(other.explained, options) || other.gain < found.gain - options.alike) return std::nullopt;
-  return other;
+  return explains(other.explained, options) ? std::optional(std::move(other)) : std::nullopt;
+}
+
+/// Late positions of one stream are those of the other one early, but for what the lever arm turns meanwhile:
+/// the best one, and that of the other stream unless it fits clearly worse. Filters delay, so the late one
+/// comes first.
+std::vector<LateByARow> of_either(std::vector<LateByARow> found, const Evidence& evidence,
+                                  const DiagnosisOptions& options, const LateByARowOptions& late) {
+  if (found.empty()) return found;
+  std::stable_sort(found.begin(), found.end(),
+                   [](const LateByARow& x, const LateByARow& y) { return x.gain > y.gain; });
+  const auto of_other = std::find_if(found.begin(), found.end(),
+                                     [&](const LateByARow& one) { return one.side != found.front().side; });
+  std::optional<LateByARow> other = of_other != found.end()
+                                        ? std::optional(*of_other)
+                                        : by_other_stream(evidence, found.front(), options, late.near);
+  std::vector<LateByARow> either{std::move(found.front())};
+  if (other && !better(compare(other->explained, either.front().explained), options.alike, options))
+    either.insert(other->rows > 0 ? either.begin() : either.end(), *std::move(other));
+  return either;
 }
 
 }  // namespace
@@ -95,39 +113,32 @@ std::vector<LateByARow> late_by_a_row(const Evidence& evidence, const DiagnosisO
       if (counts(evidence, here, options, late)) found.push_back(std::move(here));
     }
   }
-  const auto fits_better = [](const LateByARow& x, const LateByARow& y) { return x.gain > y.gain; };
-  std::stable_sort(found.begin(), found.end(), fits_better);
-  if (!found.empty() && found.front().side == found.back().side)
-    if (std::optional<LateByARow> other = by_other_stream(evidence, found.front(), options, late.near))
-      found.push_back(*std::move(other));
-  std::stable_sort(found.begin(), found.end(), fits_better);
-  return found;
+  return of_either(std::move(found), evidence, options, late);
 }
 
-std::vector<Finding> worded_rows(const std::vector<LateByARow>& found, const Evidence& evidence,
-                                 const DiagnosisOptions& options) {
+std::vector<Finding> worded_rows(const std::vector<LateByARow>& found, const Evidence& evidence) {
   std::vector<Finding> findings;
   for (const LateByARow& one : found) {
-    if (one.gain < found.front().gain - options.alike) break;
-    const char which = one.side == Side::a ? 'a' : 'b';
+    const char which = one.side == Side::a ? 'a' : 'b', rest = which == 'a' ? 'b' : 'a';
     Finding finding;
     finding.code = std::string("late_positions_") + which;
-    finding.certain = true;
+    finding.certain = found.size() == 1;
     finding.improvement = std::exp(std::max(0.0, compare(evidence.given.explained, one.explained).gain));
     finding.T_a_b = to_pose(one.explained.fit.T);
     finding.value = one.rows * one.seconds;
+    const std::string by = std::abs(one.rows) == 1 ? format("one row (%.3g s)", one.seconds)
+                                                   : format("%.3g s", std::abs(*finding.value));
+    const std::string open = finding.certain ? ""
+                                             : format(", or those of %s are %s by as much", mark(rest),
+                                                      one.rows > 0 ? "earlier" : "later");
     say(finding,
-        format("The positions of %s are %s %s than its rotations", mark(which),
-               std::abs(one.rows) == 1 ? format("one row (%.3g s)", one.seconds).c_str()
-                                       : format("%.3g s", std::abs(*finding.value)).c_str(),
+        format("The positions of %s are %s %s than its rotations", mark(which), by.c_str(),
                one.rows > 0 ? "later" : "earlier"),
         format("Write position and rotation of the same time into each row of %s.", mark(which)),
-        format(": the squared residuals of the translations are %.3g times smaller without that.",
-               std::exp(one.gain)));
+        open + format(": the squared residuals of the translations are %.3g times smaller without that.",
+                      std::exp(one.gain)));
     findings.push_back(std::move(finding));
   }
-  if (findings.size() > 1)
-    for (Finding& finding : findings) finding.certain = false;
   return findings;
 }
 

@@ -31,14 +31,12 @@ struct LateByARow {
   Explained explained{};  ///< with the positions of the right rows
 };
 
-/// Those that the drive shows, the one that fits best first. Late positions of one stream are those of the
-/// other one early, but for what the lever arm turns meanwhile: that one is there as well where it fits about
-/// as well (DiagnosisOptions::alike).
+/// What the drive shows; empty: nothing. The best of the streams, and the other one where it fits about as
+/// well (DiagnosisOptions::alike), the late one first.
 std::vector<LateByARow> late_by_a_row(const Evidence& evidence, const DiagnosisOptions& options,
                                       const LateByARowOptions& late = {});
 
 /// Findings late_positions_a|_b: both, each uncertain, where either stream may be the one.
-std::vector<Finding> worded_rows(const std::vector<LateByARow>& found, const Evidence& evidence,
-                                 const DiagnosisOptions& options);
+std::vector<Finding> worded_rows(const std::vector<LateByARow>& found, const Evidence& evidence);
 
 }  // namespace egocal::detail

@@ -280,7 +280,7 @@ std::vector<Finding> other_contents(const Evidence& evidence, const DiagnosisOpt
   const std::vector<LateByARow> late = late_by_a_row(evidence, options);
   const bool late_fit_better = !late.empty() && (turned.empty() || late.front().gain > turned.front().gain);
   std::vector<Finding> steps =
-      late_fit_better ? worded_rows(late, evidence, options) : worded_steps(turned, evidence, options);
+      late_fit_better ? worded_rows(late, evidence) : worded_steps(turned, evidence, options);
   if (contents.empty() || (!steps.empty() && steps.front().improvement > contents.front().improvement))
     return steps.empty() ? contents : steps;
   return contents;
