@@ -70,27 +70,26 @@ void word_beside_moves(Finding& finding) {
       ", the mounting did not change and the answer is another one; the motions cannot tell.");
 }
 
-}  // namespace
-
-void look_further(const PairingOptions& pairing, const Evidence& evidence, const Answered& answered,
-                  const Fit& fit, const DiagnosisOptions& options, WrongStream& wrong_stream, Misfit& misfit,
-                  std::vector<Finding>& findings) {
+/// The angle that both streams turn by in the drive, as far as the motions show it [rad].
+double turned_together(const Evidence& evidence) {
   const Motions& motions = evidence.given.explained.motions;
-  // rotations that were misread do not turn as the other stream does, or hardly at all
-  if (!explains(evidence.scaled.explained, options) && !wrong_stream.contents().empty()) {
-    const std::vector<Finding>& wrong = wrong_stream.best();
-    findings.insert(findings.begin(), wrong.begin(), wrong.end());
-    return;
-  }
   double turned = 0;
   for (const Motion& motion : motions.all) turned += std::min(motion.angle_a, motion.angle_b);
-  turned *= static_cast<double>(evidence.instants.size()) /
-            static_cast<double>(motions.all.size() * static_cast<std::size_t>(motions.stride));
-  if (turned < options.least_turning) {
-    findings.push_back(too_little_motion(motions.all.size(), options));
-    // what the rotations leave is noise: the translations alone can contradict the answer
+  return turned * (static_cast<double>(evidence.instants.size()) /
+                   static_cast<double>(motions.all.size() * static_cast<std::size_t>(motions.stride)));
+}
+
+/// Why the streams do not turn together, or not enough; empty: they do.
+std::optional<Finding> turning_apart(const Evidence& evidence, const Answered& answered, const Fit& fit,
+                                     const DiagnosisOptions& options, Misfit& misfit) {
+  const Motions& motions = evidence.given.explained.motions;
+  // what the rotations leave is noise: the translations alone can contradict the answer
+  const auto take_translations_alone = [&] {
     misfit.at_answer = misfit.median = fit.translation_relative_median;
-    return;
+  };
+  if (turned_together(evidence) < options.least_turning) {
+    take_translations_alone();
+    return too_little_motion(motions.all.size(), options);
   }
   const double correlation = turning_correlation(motions);
   const bool noise = left_by_noise(evidence, fit, options, misfit);
@@ -98,24 +97,48 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
   const double way = noise ? TurningNoiseOptions().most_of_way : options.unrelated_misfit;
   if (one_drive && misfit.best > options.doubtful_misfit &&
       correlation < options.unrelated_part_correlation && fit.translation_relative_median < way) {
-    findings.push_back(turning_in_noise(correlation));
-    // what the rotations leave is noise: the translations alone can contradict the answer
-    misfit.at_answer = misfit.median = fit.translation_relative_median;
-    return;
+    take_translations_alone();
+    return turning_in_noise(correlation);
   }
-  if (noise) misfit.at_answer = misfit.median = fit.translation_relative_median;
-  if (!noise && misfit.best > options.contradictory_misfit && correlation < options.unrelated_correlation) {
-    findings.push_back(unrelated(correlation));
-    return;
-  }
-  for (Finding& finding : unrelated_part(motions)) {
-    findings.push_back(std::move(finding));
-    return;
-  }
+  if (noise) take_translations_alone();
+  if (!noise && misfit.best > options.contradictory_misfit && correlation < options.unrelated_correlation)
+    return unrelated(correlation);
+  if (std::vector<Finding> part = unrelated_part(motions); !part.empty()) return std::move(part.front());
   if (answered.seconds >= options.unrelated_least_seconds && misfit.best > options.unrelated_misfit &&
       misfit.best <= options.contradictory_misfit && !one_drive &&
-      turning_correlation(motions, options.unrelated_part) < options.unrelated_part_correlation) {
-    findings.push_back(unrelated(correlation));
+      turning_correlation(motions, options.unrelated_part) < options.unrelated_part_correlation)
+    return unrelated(correlation);
+  return {};
+}
+
+/// Where nothing else is found.
+std::optional<Finding> last_of_all(const Evidence& evidence, const Answered& answered,
+                                   const MovedMount& moved, const DiagnosisOptions& options) {
+  std::optional<Finding> last;
+  if (answered.problem.mode != Mode::planar) {
+    last = back_and_forth(evidence.instants, answered, options);
+    if (!last) last = swaying_mount(evidence.instants, answered, options);
+    if (!last) last = following_mount(evidence.instants, evidence.stride, answered, options);
+  }
+  if (!last)
+    last = contradicting_parts_finding(
+        contradicting_parts(evidence.instants, evidence.stride, to_pose(answered.T_a_b), options.motions));
+  return last ? last : contradicting_times(moved.unexplained, options);
+}
+
+}  // namespace
+
+void look_further(const PairingOptions& pairing, const Evidence& evidence, const Answered& answered,
+                  const Fit& fit, const DiagnosisOptions& options, WrongStream& wrong_stream, Misfit& misfit,
+                  std::vector<Finding>& findings) {
+  // rotations that were misread do not turn as the other stream does, or hardly at all
+  if (!explains(evidence.scaled.explained, options) && !wrong_stream.contents().empty()) {
+    const std::vector<Finding>& wrong = wrong_stream.best();
+    findings.insert(findings.begin(), wrong.begin(), wrong.end());
+    return;
+  }
+  if (std::optional<Finding> apart = turning_apart(evidence, answered, fit, options, misfit)) {
+    findings.push_back(*std::move(apart));
     return;
   }
   const std::vector<Finding>& wrong = wrong_stream.best();
@@ -151,7 +174,8 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
       findings.insert(findings.begin(), *std::move(scale));
       return;
     }
-  if (const std::optional<UnexplainedPart> part = unexplained_part(motions, evidence.given.explained.fit.T)) {
+  if (const std::optional<UnexplainedPart> part =
+          unexplained_part(evidence.given.explained.motions, evidence.given.explained.fit.T)) {
     findings.push_back(unexplained(*part));
     return;
   }
@@ -159,17 +183,8 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     findings.insert(findings.begin(), wrong.begin(), wrong.end());
     return;
   }
-  std::optional<Finding> last;
-  if (answered.problem.mode != Mode::planar) last = back_and_forth(evidence.instants, answered, options);
-  if (!last && answered.problem.mode != Mode::planar)
-    last = swaying_mount(evidence.instants, answered, options);
-  if (!last && answered.problem.mode != Mode::planar)
-    last = following_mount(evidence.instants, evidence.stride, answered, options);
-  if (!last)
-    last = contradicting_parts_finding(
-        contradicting_parts(evidence.instants, evidence.stride, to_pose(answered.T_a_b), options.motions));
-  if (!last) last = contradicting_times(moved.unexplained, options);
-  if (last) findings.insert(findings.begin(), *std::move(last));
+  if (std::optional<Finding> last = last_of_all(evidence, answered, moved, options))
+    findings.insert(findings.begin(), *std::move(last));
 }
 
 }  // namespace egocal::detail
