@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "terminal.hpp"
 
-#define NCURSES_WIDECHAR 1
-#include <curses.h>
 #include <fcntl.h>
 #include <langinfo.h>
 #include <sys/ioctl.h>
-#include <term.h>
 #include <unistd.h>
 
 #include <array>
@@ -15,13 +12,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "curses.hpp"
 #include "terminal_rescue.hpp"
-
-// curses.h and term.h define these as macros
-#undef lines
-#undef columns
-#undef tab
-#undef key
 
 namespace egocal::monitor {
 namespace {

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "terminal_rescue.hpp"
 
-#define NCURSES_WIDECHAR 1
-#include <curses.h>
-#include <term.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -13,11 +10,7 @@
 #include <cstdio>
 #include <initializer_list>
 
-// curses.h and term.h define these as macros
-#undef lines
-#undef columns
-#undef tab
-#undef key
+#include "curses.hpp"
 
 namespace egocal::monitor {
 

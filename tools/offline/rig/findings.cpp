@@ -83,7 +83,7 @@ std::map<std::string, PairFindings> findings_by_code(const RigReport& report, bo
   return result;
 }
 
-/// Right streams (docs/findings.md). They say how well an answer is known, and blame nobody.
+/// Right streams (docs/findings.md). They say how well an answer is known, not that a sensor is wrong.
 bool leaves_the_answer_right(const std::string& code) {
   return code == "undersampled" || code == "frozen" || code == "too_little_motion";
 }

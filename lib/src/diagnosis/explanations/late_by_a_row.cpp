@@ -33,10 +33,10 @@ Vector3d from_another_row(const Trajectory& rows, std::size_t row, int later) {
 /// Whether the number of rows that suits the motions best is one, and not none.
 bool is_one(const Explained& given, const std::vector<Vector3d>& changes, Side side,
             const LateByARowOptions& late) {
-  const double number = best_multiple(given, changes, side), off = std::abs(number - 1);
-  if (!(off < late.near)) return false;
+  const double number = best_multiple(given, changes, side);
+  if (!(std::abs(number - 1) < late.near)) return false;  // the jack-knife takes longer
   const double stddev = jack_knife(given, changes, side, late.blocks, late.fewest);
-  return number > late.sigmas * stddev && off < std::max(late.most_sigmas * stddev, 0.25 * late.near);
+  return is_expected(number, 1, stddev, late.near, late.sigmas, late.most_sigmas);
 }
 
 bool counts(const Evidence& evidence, const LateByARow& found, const DiagnosisOptions& options,

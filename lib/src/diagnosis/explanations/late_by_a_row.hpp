@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Positions that stand one row too late or too early beside the rotations of the same stream: columns of two
+// Positions that are one row too late or too early beside the rotations of the same stream: columns of two
 // tables that were joined one off, or a loop that writes the position before and the rotation after a step.
 #pragma once
 

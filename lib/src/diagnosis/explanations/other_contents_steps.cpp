@@ -53,11 +53,9 @@ bool fits_late_positions_better(const Evidence& evidence, const Explained& steps
 bool is_that_part(const Explained& given, const Changes& changes, const TurnedStepsOptions& turned,
                   TurnedSteps& steps) {
   steps.fitted = steps.part * best_multiple(given, changes, steps.side);
-  const double off = std::abs(steps.fitted - steps.part);
-  if (!(off < turned.near)) return false;
+  if (!(std::abs(steps.fitted - steps.part) < turned.near)) return false;
   steps.stddev = std::abs(steps.part) * jack_knife(given, changes, steps.side, turned.blocks, turned.fewest);
-  return std::abs(steps.fitted) > turned.sigmas * steps.stddev &&
-         off < std::max(turned.most_sigmas * steps.stddev, 0.25 * turned.near);
+  return is_expected(steps.fitted, steps.part, steps.stddev, turned.near, turned.sigmas, turned.most_sigmas);
 }
 
 /// Whether the streams agree better by what matters, and no delay does it.

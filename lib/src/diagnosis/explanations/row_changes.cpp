@@ -101,6 +101,13 @@ double jack_knife(const Explained& given, const Changes& changes, Side side, uns
   return std::sqrt(sum * static_cast<double>(blocks - 1) / static_cast<double>(blocks));
 }
 
+bool is_expected(double fitted, double expected, double stddev, double near, double sigmas,
+                 double most_sigmas) {
+  const double off = std::abs(fitted - expected);
+  return off < near && std::abs(fitted) > sigmas * stddev &&
+         off < std::max(most_sigmas * stddev, 0.25 * near);
+}
+
 Explained with_changes(const Explained& given, const Changes& changes, Side side,
                        const DiagnosisOptions& options) {
   Explained result{given.motions, {}};

@@ -23,10 +23,16 @@ std::vector<Eigen::Vector3d> changes_of_rows(const Evidence& evidence, Side side
 /// Of these changes, the multiple that suits the motions best.
 double best_multiple(const Explained& given, const std::vector<Eigen::Vector3d>& changes, Side side);
 
-/// Its standard deviation, where parts of the drive are left out in turn: at most `most` of them; infinite
+/// Its standard deviation, where parts of the drive are omitted in turn, at most `most` of them; infinite
 /// where the drive has fewer than `fewest`.
 double jack_knife(const Explained& given, const std::vector<Eigen::Vector3d>& changes, Side side,
                   unsigned most, unsigned fewest);
+
+/// Whether a fitted number is the expected one, and not none: less than `near` from it, more than `sigmas` of
+/// its standard deviations from zero, and at most `most_sigmas` of them, or a quarter of `near`, from what is
+/// expected.
+bool is_expected(double fitted, double expected, double stddev, double near, double sigmas,
+                 double most_sigmas);
 
 /// The motions changed once, and what explains them.
 Explained with_changes(const Explained& given, const std::vector<Eigen::Vector3d>& changes, Side side,
