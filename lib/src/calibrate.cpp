@@ -9,7 +9,7 @@
 #include "calibration/no_motions.hpp"
 #include "calibration/scale_verdict.hpp"
 #include "calibration/steps.hpp"
-#include "diagnosis/explanations/clock_check.hpp"
+#include "diagnosis/explanations/times/clock_check.hpp"
 #include "diagnosis/verdict/judge.hpp"
 #include "egocal/calibrate_beside.hpp"
 #include "egocal/diagnosis/finding_words.hpp"

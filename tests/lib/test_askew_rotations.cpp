@@ -8,7 +8,7 @@
 
 #include "../support/findings.hpp"
 #include "../support/simulated_drive.hpp"
-#include "diagnosis/explanations/askew_rotations.hpp"
+#include "diagnosis/explanations/turning/askew_rotations.hpp"
 #include "egocal/calibrate.hpp"
 
 namespace egocal::test_askew_rotations {

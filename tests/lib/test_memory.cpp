@@ -10,7 +10,7 @@
 #include <new>
 
 #include "../support/simulated_drive.hpp"
-#include "diagnosis/explanations/turning_scale.hpp"
+#include "diagnosis/explanations/turning/turning_scale.hpp"
 #include "diagnosis/motions/motions.hpp"
 #include "diagnosis/motions/robust_fit.hpp"
 

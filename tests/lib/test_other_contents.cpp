@@ -17,7 +17,7 @@
 #include "../support/findings.hpp"
 #include "../support/mistakes.hpp"
 #include "../support/random_motion.hpp"
-#include "diagnosis/explanations/turning_of_steps.hpp"
+#include "diagnosis/explanations/turning/turning_of_steps.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/io/twist_integrator.hpp"

@@ -10,9 +10,9 @@
 
 #include "diagnosis/explanations/both_streams.hpp"
 #include "diagnosis/explanations/common_mistakes.hpp"
-#include "diagnosis/explanations/forward.hpp"
-#include "diagnosis/explanations/scale.hpp"
-#include "diagnosis/explanations/without_lever_arms.hpp"
+#include "diagnosis/explanations/contents/forward.hpp"
+#include "diagnosis/explanations/contents/without_lever_arms.hpp"
+#include "diagnosis/explanations/lengths/scale.hpp"
 #include "diagnosis/motions/axes.hpp"
 
 namespace egocal::detail {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
-#include "diagnosis/explanations/forward.hpp"
+#include "diagnosis/explanations/contents/forward.hpp"
 #include "diagnosis/streams/pace.hpp"
 #include "diagnosis/words/wording.hpp"
 

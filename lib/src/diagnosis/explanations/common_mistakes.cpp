@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "diagnosis/explanations/scale.hpp"
+#include "diagnosis/explanations/lengths/scale.hpp"
 
 namespace egocal::detail {
 

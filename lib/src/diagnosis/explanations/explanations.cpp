@@ -9,7 +9,7 @@
 #include "diagnosis/explanations/best_reading.hpp"
 #include "diagnosis/explanations/both_streams.hpp"
 #include "diagnosis/explanations/common_mistakes.hpp"
-#include "diagnosis/explanations/scale.hpp"
+#include "diagnosis/explanations/lengths/scale.hpp"
 #include "diagnosis/motions/axes.hpp"
 #include "diagnosis/motions/robust_fit.hpp"
 #include "diagnosis/mount/large_move.hpp"

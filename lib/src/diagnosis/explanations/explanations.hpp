@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/explanations/clock.hpp"
+#include "diagnosis/explanations/times/clock.hpp"
 #include "diagnosis/motions/robust_fit.hpp"
 #include "egocal/diagnosis/options.hpp"
 

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "diagnosis/explanations/plane_turning.hpp"
+#include "diagnosis/explanations/turning/plane_turning.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 

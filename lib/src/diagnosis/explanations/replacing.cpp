@@ -7,11 +7,11 @@
 #include <string_view>
 #include <utility>
 
-#include "diagnosis/explanations/not_a_move.hpp"
-#include "diagnosis/explanations/other_contents.hpp"
-#include "diagnosis/explanations/turned_lever_arm.hpp"
-#include "diagnosis/explanations/turning_scale.hpp"
-#include "diagnosis/explanations/unlike_columns.hpp"
+#include "diagnosis/explanations/contents/other_contents.hpp"
+#include "diagnosis/explanations/contents/turned_lever_arm.hpp"
+#include "diagnosis/explanations/lengths/not_a_move.hpp"
+#include "diagnosis/explanations/lengths/unlike_columns.hpp"
+#include "diagnosis/explanations/turning/turning_scale.hpp"
 #include "diagnosis/mount/large_move.hpp"
 #include "diagnosis/mount/mount.hpp"
 

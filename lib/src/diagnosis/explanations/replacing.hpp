@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "diagnosis/explanations/explanations.hpp"
-#include "diagnosis/explanations/late_positions.hpp"
+#include "diagnosis/explanations/times/late_positions.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
 #include "egocal/pairing/options.hpp"
 

@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "diagnosis/explanations/askew_rotations.hpp"
-#include "diagnosis/explanations/late_positions.hpp"
+#include "diagnosis/explanations/times/late_positions.hpp"
+#include "diagnosis/explanations/turning/askew_rotations.hpp"
 #include "diagnosis/verdict/far_off.hpp"
 #include "egocal/diagnosis/certain_of_either.hpp"
 

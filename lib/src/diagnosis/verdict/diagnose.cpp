@@ -12,13 +12,13 @@
 #include <utility>
 #include <vector>
 
-#include "diagnosis/explanations/clock_check.hpp"
-#include "diagnosis/explanations/forward.hpp"
-#include "diagnosis/explanations/held_stream.hpp"
-#include "diagnosis/explanations/late_positions.hpp"
-#include "diagnosis/explanations/late_rotations.hpp"
+#include "diagnosis/explanations/contents/forward.hpp"
 #include "diagnosis/explanations/planes.hpp"
 #include "diagnosis/explanations/replacing.hpp"
+#include "diagnosis/explanations/times/clock_check.hpp"
+#include "diagnosis/explanations/times/held_stream.hpp"
+#include "diagnosis/explanations/times/late_positions.hpp"
+#include "diagnosis/explanations/times/late_rotations.hpp"
 #include "diagnosis/motions/answer_change.hpp"
 #include "diagnosis/motions/fit.hpp"
 #include "diagnosis/motions/standing_still.hpp"

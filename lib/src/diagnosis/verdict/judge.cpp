@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "diagnosis/explanations/late_positions.hpp"
+#include "diagnosis/explanations/times/late_positions.hpp"
 #include "diagnosis/goal/goal.hpp"
 #include "diagnosis/verdict/far_off.hpp"
 #include "diagnosis/verdict/nominal.hpp"

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
-#include "diagnosis/explanations/inverted_and_moved.hpp"
-#include "diagnosis/explanations/not_a_move.hpp"
+#include "diagnosis/explanations/contents/inverted_and_moved.hpp"
+#include "diagnosis/explanations/lengths/not_a_move.hpp"
 #include "diagnosis/mount/back_and_forth.hpp"
 #include "diagnosis/mount/following_mount.hpp"
 #include "diagnosis/mount/large_move.hpp"

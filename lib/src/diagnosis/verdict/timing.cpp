@@ -8,8 +8,8 @@
 #include <optional>
 #include <utility>
 
-#include "diagnosis/explanations/clock_check.hpp"
-#include "diagnosis/explanations/late_positions.hpp"
+#include "diagnosis/explanations/times/clock_check.hpp"
+#include "diagnosis/explanations/times/late_positions.hpp"
 #include "diagnosis/motions/answer_change.hpp"
 #include "diagnosis/streams/undersampling.hpp"
 #include "egocal/diagnosis/certain_of_either.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/explanations/clock.hpp"
+#include "diagnosis/explanations/times/clock.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/explanations/unlike_columns.hpp"
+#include "diagnosis/explanations/lengths/unlike_columns.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
-#include "diagnosis/explanations/without_lever_arms.hpp"
+#include "diagnosis/explanations/contents/without_lever_arms.hpp"
 #include "diagnosis/motions/changed_motions.hpp"
 #include "diagnosis/motions/stillest_point.hpp"
 #include "diagnosis/words/wording.hpp"

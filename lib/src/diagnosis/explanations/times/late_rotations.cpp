@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/explanations/late_rotations.hpp"
+#include "diagnosis/explanations/times/late_rotations.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
-#include "diagnosis/explanations/late_positions.hpp"
+#include "diagnosis/explanations/times/late_positions.hpp"
 #include "diagnosis/motions/answer_change.hpp"
 #include "egocal/diagnosis/certain_of_either.hpp"
 #include "egocal/pairing/time_offset.hpp"

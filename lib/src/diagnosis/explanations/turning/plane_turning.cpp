@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/explanations/plane_turning.hpp"
+#include "diagnosis/explanations/turning/plane_turning.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>

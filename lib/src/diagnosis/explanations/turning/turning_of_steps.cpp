@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/explanations/turning_of_steps.hpp"
+#include "diagnosis/explanations/turning/turning_of_steps.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/explanations/rates_in_degrees.hpp"
+#include "diagnosis/explanations/turning/rates_in_degrees.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/explanations/turning_scale.hpp"
+#include "diagnosis/explanations/turning/turning_scale.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
-#include "diagnosis/explanations/turning_of_steps.hpp"
-#include "diagnosis/explanations/vector_lengths.hpp"
+#include "diagnosis/explanations/turning/turning_of_steps.hpp"
+#include "diagnosis/explanations/turning/vector_lengths.hpp"
 #include "diagnosis/motions/at_ends.hpp"
 #include "diagnosis/motions/changed_motions.hpp"
 #include "diagnosis/motions/stillest_point.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/explanations/without_lever_arms.hpp"
+#include "diagnosis/explanations/contents/without_lever_arms.hpp"
 
 #include <algorithm>
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/explanations/not_a_move.hpp"
+#include "diagnosis/explanations/lengths/not_a_move.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
-#include "diagnosis/explanations/wandering_scale.hpp"
+#include "diagnosis/explanations/lengths/wandering_scale.hpp"
 #include "diagnosis/motions/axes.hpp"
 #include "diagnosis/motions/standing_still.hpp"
 #include "diagnosis/mount/in_parts.hpp"

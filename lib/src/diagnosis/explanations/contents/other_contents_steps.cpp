@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/explanations/other_contents_steps.hpp"
+#include "diagnosis/explanations/contents/other_contents_steps.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
-#include "diagnosis/explanations/late_positions.hpp"
 #include "diagnosis/explanations/row_changes.hpp"
+#include "diagnosis/explanations/times/late_positions.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 

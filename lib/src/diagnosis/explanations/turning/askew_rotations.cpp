@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/explanations/askew_rotations.hpp"
+#include "diagnosis/explanations/turning/askew_rotations.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/explanations/other_contents.hpp"
+#include "diagnosis/explanations/contents/other_contents.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,9 +13,9 @@
 #include <utility>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
-#include "diagnosis/explanations/late_by_a_row.hpp"
-#include "diagnosis/explanations/other_contents_steps.hpp"
-#include "diagnosis/explanations/rates_in_degrees.hpp"
+#include "diagnosis/explanations/contents/other_contents_steps.hpp"
+#include "diagnosis/explanations/times/late_by_a_row.hpp"
+#include "diagnosis/explanations/turning/rates_in_degrees.hpp"
 #include "diagnosis/motions/changed_motions.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/explanations/held_stream.hpp"
+#include "diagnosis/explanations/times/held_stream.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/explanations/inverted_and_moved.hpp"
+#include "diagnosis/explanations/contents/inverted_and_moved.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
-#include "diagnosis/explanations/forward.hpp"
+#include "diagnosis/explanations/contents/forward.hpp"
 #include "diagnosis/mount/in_parts.hpp"
 #include "diagnosis/mount/mount.hpp"
 #include "diagnosis/words/wording.hpp"

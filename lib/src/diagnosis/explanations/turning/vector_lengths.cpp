@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/explanations/vector_lengths.hpp"
+#include "diagnosis/explanations/turning/vector_lengths.hpp"
 
 #include <array>
 #include <cmath>

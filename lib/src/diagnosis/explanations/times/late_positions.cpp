@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/explanations/late_positions.hpp"
+#include "diagnosis/explanations/times/late_positions.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis/explanations/turned_lever_arm.hpp"
+#include "diagnosis/explanations/contents/turned_lever_arm.hpp"
 
 #include <cmath>
 #include <string>
