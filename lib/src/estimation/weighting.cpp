@@ -35,7 +35,7 @@ std::vector<StrideCell> totals(const StrideBlocks& blocks, const Sums& sums) {
 /// little of long motions. In drives of 20 motions with noise of a memory of
 /// four steps they chose long ones for every third, whose errors were four
 /// times what blocks said; without it translations err by a sixth less
-/// (docs/accuracy.md, "No memory in short drives").
+/// (docs/weights.md, "No memory in short drives").
 constexpr std::uint64_t least_block_for_memory = 4;
 
 /// The memories that may be better than the weights by the residuals. Where

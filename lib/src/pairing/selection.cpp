@@ -29,7 +29,7 @@ double score(const Spread& spread, int stride, const SelectionOptions& options) 
 /// A setting is not taken where its answer leaves this many times as much of the motions of its stride as the
 /// answer of another balance (detail::misfit()), however small its spread is: it is a wrong minimum, or rests
 /// on the noise of what counts too much. As WeightingOptions::less_likely, with the same study
-/// (docs/accuracy.md, "Wrong minima").
+/// (docs/weights.md, "Wrong minima").
 constexpr double less_likely = 2;
 
 /// A setting with its answer.

@@ -19,7 +19,7 @@ class Jackknife {
  public:
   /// Largest lag of the correlations that count, in blocks. Each further lag adds chance; with three instead
   /// of four, noise on poses and on motions in drives of 20 motions is covered to 90.5 instead of 91.5 %
-  /// (docs/accuracy.md).
+  /// (docs/intervals.md).
   static constexpr std::size_t most_lag = 4;
 
   explicit Jackknife(double pairs) : pairs_(pairs) {}
@@ -66,7 +66,7 @@ class Jackknife {
   /// Of m equal blocks, as seen from their own mean, a correlation of r is found as r - (1 + 3 r) / m in the
   /// mean (Kendall 1954), which is undone; 3 r / m only of errors that last. Undone of what is shared as
   /// well, noise on the motions of one sensor and the poses of the other would have r = 0.37, not 0.18, in
-  /// 100 motions, as m is less than the number of blocks that touch (docs/accuracy.md, "Noise that lasts").
+  /// 100 motions, as m is less than the number of blocks that touch (docs/intervals.md, "Noise that lasts").
   double correlation_of_neighbours(double shared, double m) const {
     return mean_over_parts([&](int i) { return lasting(neighbours_.correlation(i, 1), shared, m); });
   }

@@ -157,7 +157,7 @@ Blocks blocks_around(const Problem& problem, const ShownDirections& directions, 
 /// overlap: by how much the blocks are together more than the whole. Neighbours correlate by three quarters
 /// of it where the noise is what the weights are made for. Where nearly all motions are longer than a block
 /// (overlap near one) what is shared is spread over many blocks, little between any two. Studies:
-/// docs/accuracy.md, "What touching blocks share".
+/// docs/intervals.md, "What touching blocks share".
 struct Sharing {
   /// Correlation of neighbours, as a part of the overlap: 0.75 less what errors that are not random need.
   static constexpr double of_overlap = 0.6;
@@ -195,12 +195,12 @@ double of_fading(double r, double error, double freedom) {
 
 /// The part of what a direction's own correlation exceeds the mean by that counts; the rest is chance. With
 /// 0.5 wandering noise in the plane is covered to half a percent more (20 motions), and white noise has
-/// standard deviations that are 1.5 % larger in 25 blocks (docs/accuracy.md, "Noise that lasts").
+/// standard deviations that are 1.5 % larger in 25 blocks (docs/intervals.md, "Noise that lasts").
 constexpr double part_of_own = 0.3;
 
 /// Of each direction, the larger of two: of_fading(), and the sum of the correlations of near blocks, as
 /// errors need not fade like that. Where blocks touch, most of what single directions and chance show is
-/// what the blocks share, so both count as far as they do not: measured, not derived (docs/accuracy.md,
+/// what the blocks share, so both count as far as they do not: measured, not derived (docs/intervals.md,
 /// "Noise that lasts").
 Vector6d of_memory(const Jackknife& single, double overlap, const ObservabilityOptions& options) {
   const Sharing sharing(overlap);

@@ -142,7 +142,7 @@ struct AccumulatorOptions {
   std::uint64_t first_choice = 64;
   /// Before that, answers are of a choice that is made for them, from this many instants on, and that nothing
   /// later depends on. With equal weights drives of 20 to 60 poses are off by three times as much; from fewer
-  /// than 16, one answer in a hundred is called good and is off (docs/accuracy.md, "Short drives").
+  /// than 16, one answer in a hundred is called good and is off (docs/weights.md, "From how many poses on").
   std::uint64_t early_choice = 16;
   /// In [0, 1): several pairs of one rig choose at different times. Each choice comes later by this share of
   /// the instants to the next one.

@@ -46,7 +46,7 @@ struct WeightingOptions {
   /// Where noise on poses and on motions explains how the mean squared residuals of rotation and of
   /// translation grow with the stride, no memory is tried that is off by more than `refuted` standard errors
   /// of that growth. Explained: a chi-square of at most this per degree of freedom, of the strides with
-  /// enough motions that share no step. Study: 6 machines x 8 kinds of noise x 40 drives (docs/accuracy.md,
+  /// enough motions that share no step. Study: 6 machines x 8 kinds of noise x 40 drives (docs/weights.md,
   /// "Noise that the residuals explain"); nine of ten are below 1, noise with a memory of four steps is
   /// above 12.
   double refuted = 3;
@@ -80,7 +80,7 @@ struct WeightingOptions {
   /// are. If the balance is wrong by a factor of a thousand, the minimum may be half a turn away, and a
   /// jack-knife reports a small standard deviation for it.
   /// Two: by eight independent motions, the fewest parts of a spread, it is 4,000 times less likely. Answers
-  /// that are both near the truth differ by a few percent. Study: docs/accuracy.md, "Wrong minima".
+  /// that are both near the truth differ by a few percent. Study: docs/weights.md, "Wrong minima".
   double less_likely = 2;
   /// The choice in force keeps its place unless another's sum of logarithms is smaller by this: settings do
   /// not flap.
@@ -93,7 +93,7 @@ struct WeightingOptions {
   /// In the plane rotations have one axis instead of three, and tell a third as much: the smallest growth
   /// within one standard error is too often far too small. In 171 of 1200 drives of 100 motions with noise on
   /// poses and on motions, weights of too long a memory won, whose intervals covered 76 %. So the most likely
-  /// growth is taken (docs/accuracy.md, "In the plane, and very short drives"). In three dimensions that
+  /// growth is taken (docs/intervals.md, "In the plane, and very short drives"). In three dimensions that
   /// would cost accuracy: on the benchmark's poses with noise .010 the median is 0.24 instead of 0.19 deg.
   double growth_evidence_in_plane = 0;
   /// A spread needs at least this many blocks: five degrees of freedom, as
