@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Every solver on the same problem, beside general solvers, in one run on one thread. Ends with the ratios
-// that docs/benchmarks.md quotes.
+// Every solver on the same problem, beside general solvers, in one run on one thread. Ends with the tables
+// of docs/benchmarks.md.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <map>
 #include <string>
 #include <vector>
 
 #include "egocal/baselines/baselines.hpp"
 #include "egocal/certificate/certificate.hpp"
+#include "egocal/cli/cli.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/solvers/global.hpp"
 #include "egocal/solvers/sdp.hpp"
@@ -19,6 +19,7 @@
 #include "egocal/solvers/sqp.hpp"
 #include "nlopt_rivals.hpp"
 #include "silence.hpp"
+#include "solver_tables.hpp"
 #include "support/random_motion.hpp"
 #ifdef EGOCAL_WITH_CSDP
 #include "csdp_rival.hpp"
@@ -115,7 +116,7 @@ void pairs_to_answer(benchmark::State& state) {
   state.SetComplexityN(state.range(0));
 }
 
-/// Keeps the medians of the processor time for the ratios at the end.
+/// Keeps the medians of the processor time.
 class Reporter : public benchmark::ConsoleReporter {
  public:
   void ReportRuns(const std::vector<Run>& runs) override {
@@ -123,44 +124,12 @@ class Reporter : public benchmark::ConsoleReporter {
     for (const Run& r : runs) {
       if (r.error_occurred) continue;
       if (r.run_type == Run::RT_Aggregate && r.aggregate_name != "median") continue;
-      median_[r.run_name.function_name] =
+      times[r.run_name.function_name] =
           r.GetAdjustedCPUTime() / benchmark::GetTimeUnitMultiplier(r.time_unit);
     }
   }
 
-  void print_ratios() const {
-    std::printf("\n| asked | measured |\n|---|---|\n");
-    at_least("dual 100 times as fast as SDPA", "sdpa", "dual", 100);
-    at_least("dual 50 times as fast as CSDP", "csdp", "dual", 50);
-    at_least("dual 30 times as fast as SLSQP cold", "nlopt_slsqp_cold", "dual", 30);
-    at_least("dual faster than SLSQP warm", "nlopt_slsqp_warm", "dual", 1);
-    at_least("dual faster than AUGLAG + TNEWTON warm", "nlopt_auglag_warm", "dual", 1);
-    at_least("planar 50 times as fast as SLSQP in four variables", "nlopt_planar_cold", "planar", 50);
-    at_most("sqp warm over dual, at most 1.5", "sqp_warm", "dual", 1.5);
-    below("verification below 3 us", "verify", 3e-6, 1);
-    below("a whole answer below 12 us", "answer", 12e-6, 1);
-    below("building the cost below 100 ns a pair", "statistics_add_1000", 100e-9, 1000);
-  }
-
- private:
-  bool have(const std::string& name) const { return median_.count(name) > 0; }
-  void at_least(const char* text, const char* slow, const char* fast, double limit) const {
-    if (!have(slow) || !have(fast)) return;
-    const double ratio = median_.at(slow) / median_.at(fast);
-    std::printf("| %s | %.1f%s |\n", text, ratio, ratio >= limit ? "" : " (missed)");
-  }
-  void at_most(const char* text, const char* over, const char* under, double limit) const {
-    if (!have(over) || !have(under)) return;
-    const double ratio = median_.at(over) / median_.at(under);
-    std::printf("| %s | %.2f%s |\n", text, ratio, ratio <= limit ? "" : " (missed)");
-  }
-  void below(const char* text, const char* name, double limit, double items) const {
-    if (!have(name)) return;
-    const double seconds = median_.at(name) / items;
-    std::printf("| %s | %.1f ns%s |\n", text, seconds * 1e9, seconds < limit ? "" : " (missed)");
-  }
-
-  std::map<std::string, double> median_;  ///< [s]
+  bench::Times times;
 };
 
 }  // namespace
@@ -208,9 +177,16 @@ int main(int argc, char** argv) {
       ->Complexity(benchmark::oN);
 
   benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  std::string page;
+  egocal::cli::Program app(
+      "bench_solvers",
+      "Times of all solvers: two tables of docs/benchmarks.md. Also takes the options of "
+      "Google Benchmark, such as --benchmark_repetitions=5.");
+  app.add_option("--write", page, "put the tables into this page");
+  if (const auto code = app.parse(argc, argv)) return *code;
   Reporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
-  reporter.print_ratios();
-  return 0;
+  std::printf("\n");
+  return std::max(bench::publish(bench::solver_times(reporter.times), page, ""),
+                  bench::publish(bench::solver_goals(reporter.times), page, ""));
 }

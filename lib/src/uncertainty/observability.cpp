@@ -90,6 +90,12 @@ void hide(Vector6d direction, double least_new, Surroundings& around) {
     around.vectors.col(k) -= 2 / squared * mirror.dot(around.vectors.col(k)) * mirror;
 }
 
+/// T' L T, without Eigen's products of large matrices: these would cost twice as much.
+Matrix6d in_tangent(const Matrix8d& L, const Matrix86d& T) {
+  const Matrix86d product = L.lazyProduct(T);
+  return T.transpose().lazyProduct(product);
+}
+
 Surroundings look_around(const Problem& problem, const Matrix8d& Q_metres, const DualQuaternion& T_a_b,
                          ErrorCorrelation errors, const ObservabilityOptions& options) {
   Surroundings around;
@@ -98,8 +104,7 @@ Surroundings look_around(const Problem& problem, const Matrix8d& Q_metres, const
   const Matrix8d Q = in_units_of(around.length, Q_metres);
   around.q = in_units_of(around.length, T_a_b);
   around.tangent = frame_a_basis(around.q);
-  around.H = around.tangent.transpose() * lagrangian_matrix(Q, least_squares_multipliers(Q, around.q)) *
-             around.tangent;
+  around.H = in_tangent(lagrangian_matrix(Q, least_squares_multipliers(Q, around.q)), around.tangent);
 
   // What is left of the curvature when noise is taken off: in the translations `independent_noise` times what
   // rotation noise adds to D (a quarter, as d = t r / 2), in the rotations the fluctuation of J, whose mean
@@ -221,7 +226,7 @@ DirectionBasis flat_directions(const Matrix8d& Q_metres, const DualQuaternion& T
   const Matrix8d Q = in_units_of(flat.length, Q_metres);
   const DualQuaternion q = in_units_of(flat.length, T_a_b);
   const Matrix86d T = frame_a_basis(q);
-  const Matrix6d H = T.transpose() * lagrangian_matrix(Q, least_squares_multipliers(Q, q)) * T;
+  const Matrix6d H = in_tangent(lagrangian_matrix(Q, least_squares_multipliers(Q, q)), T);
   const Matrix86d absolute = T.cwiseAbs();
   const double size = absolute.cwiseProduct(Q.cwiseAbs().lazyProduct(absolute)).colwise().sum().maxCoeff();
   if (exceeds(H, 64 * epsilon * size)) {
