@@ -80,6 +80,39 @@ TEST(HiddenMistakes, AStreamThatWasMadeFromTheOtherIsNamed) {
   EXPECT_NE(finding->message.find("agree to rounding"), std::string::npos) << finding->message;
 }
 
+/// Rotations of one sensor in both streams, positions that are smoothed.
+TEST(HiddenMistakes, RotationsThatWereMadeFromTheOthersAreNamed) {
+  const testing::Streams right = drive(Terrain::rough);
+  Trajectory made = right.a;
+  for (StampedPose& pose : made)
+    pose.pose = canonical_sign(
+        normalized(pose.pose * to_dual_quaternion(Pose{rotation_exp({0.4, -1.2, 0.3}), {0.3, 1.2, -0.6}})));
+  Trajectory smoothed = made;
+  for (std::size_t i = 1; i + 1 < made.size(); ++i) {
+    Pose pose = to_pose(made[i].pose);
+    pose.translation =
+        (to_pose(made[i - 1].pose).translation + pose.translation + to_pose(made[i + 1].pose).translation) /
+        3;
+    smoothed[i].pose = canonical_sign(to_dual_quaternion(pose));
+  }
+  const Calibration calibration = calibrate(right.a, smoothed);
+  const Finding* finding = find(calibration, "same_stream");
+  ASSERT_NE(finding, nullptr) << calibration.reason;
+  EXPECT_FALSE(finding->certain);
+  EXPECT_NE(finding->message.find("rotations agree to rounding"), std::string::npos) << finding->message;
+}
+
+/// On a straight road neither sensor turns, which is no sign of a copy.
+TEST(HiddenMistakes, RotationsThatNeverChangeAreNoCopies) {
+  Trajectory a, b;
+  for (int i = 0; i < 200; ++i) {
+    const double x = 0.5 * i, wobble = 0.01 * std::sin(7.0 * i);
+    a.push_back({i * 100'000, to_dual_quaternion(Pose{{1, 0, 0, 0}, {x, 0, 0}})});
+    b.push_back({i * 100'000, to_dual_quaternion(Pose{{1, 0, 0, 0}, {x + wobble, wobble, 0}})});
+  }
+  EXPECT_EQ(find(calibrate(a, b), "same_stream"), nullptr);
+}
+
 /// The same, written with few digits: rounding hides that the motions agree as those of no two sensors do.
 TEST(HiddenMistakes, AStreamThatWasMadeFromTheOtherAndRoundedIsNamed) {
   const testing::Streams right = drive(Terrain::rough);

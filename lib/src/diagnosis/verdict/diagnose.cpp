@@ -86,8 +86,10 @@ void add_faults_of_poses(const Evidence& evidence, const Answered& answered, con
     findings.insert(findings.begin(), *std::move(mixed));
 }
 
-/// That one stream was made from the other explains an answer that is the identity, too.
-void add_same_stream(const Answered& answered, const DiagnosisOptions& options, Diagnosis& result) {
+/// That one stream was made from the other explains an answer that is the identity, too. turning: angle of
+/// the typical motion [rad].
+void add_same_stream(const Answered& answered, double turning, const DiagnosisOptions& options,
+                     Diagnosis& result) {
   StreamCheckOptions checks;
   checks.metres = options.unit == LengthUnit::metres;
   if (options.unit == LengthUnit::unknown) {
@@ -96,7 +98,8 @@ void add_same_stream(const Answered& answered, const DiagnosisOptions& options, 
     checks.known_translation *= of_a_metre;
   }
   if (std::any_of(result.findings.begin(), result.findings.end(), certain_of_either)) return;
-  for (const std::vector<Finding>& found : {made_from_each_other(result.fit), in_one_frame(answered, checks)})
+  for (const std::vector<Finding>& found :
+       {made_from_each_other(result.fit, turning), in_one_frame(answered, checks)})
     if (!has(result.findings, "same_stream"))
       result.findings.insert(result.findings.end(), found.begin(), found.end());
 }
@@ -152,7 +155,7 @@ void add_what_is_beside(const Foreseen& foreseen, const DiagnosisOptions& option
   const Evidence& evidence = foreseen.evidence;
   const PairingOptions& pairing = foreseen.pairing;
   name_wrong_scale(evidence, pairing, answered, options, result.findings);
-  add_same_stream(answered, options, result);
+  add_same_stream(answered, evidence.given.explained.motions.rotation, options, result);
   add_impossible_pace(evidence, options, result.findings);
   look_at_times(foreseen, answered, result);
   name_small_scale(evidence, options, answered, result);
