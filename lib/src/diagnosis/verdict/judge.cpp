@@ -162,8 +162,8 @@ bool within_what_is_stated(const Finding& finding, const Answered& answered,
 /// Another answer that fits as well makes this one doubtful, unless it is the usual price of one more
 /// unknown.
 bool casts_doubt(const Finding& finding) {
-  return finding.code != "inverted_both" && finding.code != "scale" && finding.code != "clock_offset" &&
-         finding.code != "clock_drift";
+  return finding.code != "inverted_both" && finding.code != "reversed_steps" && finding.code != "scale" &&
+         finding.code != "clock_offset" && finding.code != "clock_drift";
 }
 
 /// A change of the mounting that may as well be noise that wanders, to an answer that this one is near: the

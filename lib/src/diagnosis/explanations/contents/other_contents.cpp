@@ -14,6 +14,7 @@
 
 #include "diagnosis/explanations/common_mistakes.hpp"
 #include "diagnosis/explanations/contents/other_contents_steps.hpp"
+#include "diagnosis/explanations/contents/reversed_steps.hpp"
 #include "diagnosis/explanations/times/late_by_a_row.hpp"
 #include "diagnosis/explanations/turning/rates_in_degrees.hpp"
 #include "diagnosis/motions/changed_motions.hpp"
@@ -276,6 +277,9 @@ std::vector<Finding> other_contents(const Evidence& evidence, const DiagnosisOpt
   std::vector<Finding> contents = of_catalogue(evidence, options, search);
   if (contents.empty())
     if (std::optional<Finding> rates = rates_in_degrees(evidence, options)) return {*std::move(rates)};
+  if (std::vector<Finding> reversed = reversed_steps(evidence, options);
+      !reversed.empty() && (contents.empty() || reversed.front().improvement > contents.front().improvement))
+    contents = std::move(reversed);
   const std::vector<TurnedSteps> turned = turned_steps(evidence, options);
   const std::vector<LateByARow> late = late_by_a_row(evidence, options);
   const bool late_fit_better = !late.empty() && (turned.empty() || late.front().gain > turned.front().gain);
