@@ -18,14 +18,22 @@ double median_if_any(const std::vector<double>& values) {
   return values.empty() ? std::numeric_limits<double>::quiet_NaN() : quantile(values, 0.5);
 }
 
-/// Of b's size to a's, the median over what was travelled, so that a single jump does not matter.
+/// Of b's size to a's, the median over what both travelled: the smaller of both in units of its own stream's
+/// usual one, so that jumps of one stream do not matter, however long.
 double median_ratio(const std::vector<Motion>& motions, double (*size_a)(const Motion&),
                     double (*size_b)(const Motion&)) {
-  std::vector<std::pair<double, double>> ratios;
+  std::vector<double> a, b;
   for (const Motion& motion : motions)
-    if (size_a(motion) > 0 && size_b(motion) > 0)
-      ratios.emplace_back(size_b(motion) / size_a(motion), std::sqrt(size_a(motion) * size_b(motion)));
-  return ratios.empty() ? 1 : weighted_median(std::move(ratios));
+    if (size_a(motion) > 0 && size_b(motion) > 0) {
+      a.push_back(size_a(motion));
+      b.push_back(size_b(motion));
+    }
+  if (a.empty()) return 1;
+  const double usual_a = quantile(a, 0.5), usual_b = quantile(b, 0.5);
+  std::vector<std::pair<double, double>> ratios;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    ratios.emplace_back(b[i] / a[i], std::min(a[i] / usual_a, b[i] / usual_b));
+  return weighted_median(std::move(ratios));
 }
 
 struct Residuals {

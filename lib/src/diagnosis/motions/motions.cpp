@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
+#include "diagnosis/motions/robust_fit.hpp"
 #include "egocal/microseconds.hpp"
 #include "pairing/cut_alike.hpp"
 #include "pairing/smooth_interpolation.hpp"
 #include "statistics/median.hpp"
+#include "statistics/quantile.hpp"
 
 namespace egocal::detail {
 
@@ -61,6 +64,33 @@ class Lookup {
   std::size_t usual_ = 0;  ///< poses that the last look went on by, less one
 };
 
+/// Lengths beyond this are jumps: an origin that is set anew in the middle of the drive is a million times as
+/// far away as a motion, and as a part of that mean everything agrees. A vehicle goes at most a few times as
+/// fast as in the middle of its way, which is where half of the other stream's way is behind it.
+double longest_of_drive(const std::vector<double>& lengths, const std::vector<double>& of_other) {
+  constexpr double most = 16;  // times the usual length: stop and go of simulated vehicles reaches 5
+  // nor do jumps of the other stream say where its way is
+  const double high = quantile(of_other, 0.9);
+  const double limit = high > 0 ? most * high : std::numeric_limits<double>::infinity();
+  std::vector<std::pair<double, double>> weighted;
+  weighted.reserve(lengths.size());
+  for (std::size_t i = 0; i < lengths.size(); ++i)
+    if (of_other[i] > 0) weighted.emplace_back(lengths[i], std::min(of_other[i], limit));
+  const double usual = weighted.empty() ? 0 : weighted_median(std::move(weighted));
+  return usual > 0 ? most * usual : std::numeric_limits<double>::infinity();
+}
+
+double mean_up_to(double longest, const std::vector<double>& lengths) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const double length : lengths)
+    if (length <= longest) {
+      sum += length;
+      ++count;
+    }
+  return sum / std::max(1.0, static_cast<double>(count));
+}
+
 Motion motion_from(const DualQuaternion& a, const DualQuaternion& b) {
   Motion motion;
   motion.a = canonical_sign(a);
@@ -80,16 +110,17 @@ Motion motion_from(const DualQuaternion& a, const DualQuaternion& b) {
 }  // namespace
 
 void measure_sizes(Motions& motions) {
-  double angle_a = 0, angle_b = 0, length_a = 0, length_b = 0;
+  std::vector<double> a, b;
+  double angle_a = 0, angle_b = 0;
   for (const Motion& motion : motions.all) {
     angle_a += motion.angle_a;
     angle_b += motion.angle_b;
-    length_a += motion.t_a.norm();
-    length_b += motion.t_b.norm();
+    a.push_back(motion.t_a.norm());
+    b.push_back(motion.t_b.norm());
   }
-  const double n = std::max(1.0, static_cast<double>(motions.all.size()));
-  motions.rotation = std::sqrt(angle_a * angle_b) / n;
-  motions.translation = std::sqrt(length_a * length_b) / n;
+  motions.rotation = std::sqrt(angle_a * angle_b) / std::max(1.0, static_cast<double>(motions.all.size()));
+  motions.translation =
+      std::sqrt(mean_up_to(longest_of_drive(a, b), a) * mean_up_to(longest_of_drive(b, a), b));
 }
 
 PosePair Instants::interpolated(const Place& place, const PoseReading& read_key,

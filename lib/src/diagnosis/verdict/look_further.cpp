@@ -10,6 +10,7 @@
 #include "diagnosis/explanations/common_mistakes.hpp"
 #include "diagnosis/explanations/contents/inverted_and_moved.hpp"
 #include "diagnosis/explanations/lengths/not_a_move.hpp"
+#include "diagnosis/explanations/lengths/part_of_other_scale.hpp"
 #include "diagnosis/mount/back_and_forth.hpp"
 #include "diagnosis/mount/following_mount.hpp"
 #include "diagnosis/mount/large_move.hpp"
@@ -176,7 +177,9 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     }
   if (const std::optional<UnexplainedPart> part =
           unexplained_part(evidence.given.explained.motions, evidence.given.explained.fit.T)) {
-    findings.push_back(unexplained(*part));
+    std::optional<Finding> scale =
+        part_of_other_scale(evidence.given.explained, part->begin, part->end, options);
+    findings.push_back(scale ? *std::move(scale) : unexplained(*part));
     return;
   }
   if (!wrong.empty()) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
+#include "diagnosis/explanations/lengths/part_of_other_scale.hpp"
 #include "diagnosis/explanations/lengths/wandering_scale.hpp"
 #include "diagnosis/motions/axes.hpp"
 #include "diagnosis/motions/standing_still.hpp"
@@ -181,6 +182,16 @@ bool moves_with_the_scale(const PairingOptions& pairing, const Evidence& evidenc
          !large_move(instants, evidence.stride, options);
 }
 
+/// What seems to move once, because the lengths of b after that are in another unit.
+std::optional<Finding> in_another_unit(const Evidence& evidence, const std::vector<Finding>& moves,
+                                       const DiagnosisOptions& options) {
+  if (!one_move(moves) || !moves.front().time) return std::nullopt;
+  std::optional<Finding> scale =
+      part_of_other_scale(evidence.given.explained, *moves.front().time, INFINITY, options);
+  const double least = gain_of_parts(evidence, moves, options) - options.alike;
+  return scale && std::log(scale->improvement) > least ? scale : std::nullopt;
+}
+
 }  // namespace
 
 double gain_of_parts(const Evidence& evidence, const std::vector<Finding>& moves,
@@ -229,6 +240,7 @@ std::vector<Finding> moves_or_else(std::vector<Finding> moves, const PairingOpti
   if (scale && std::all_of(moves.begin(), moves.end(),
                            [&](const Finding& move) { return move.improvement <= scale->improvement; }))
     return {*std::move(scale)};
+  if (std::optional<Finding> unit = in_another_unit(evidence, moves, options)) return {*std::move(unit)};
   if (moves_with_the_scale(pairing, evidence, answered, moves, options)) return {};
   if (std::any_of(of_both.begin(), of_both.end(), [&](const PoseReading& reading) {
         return explained_by_reading(reading, evidence, moves, answered, options);

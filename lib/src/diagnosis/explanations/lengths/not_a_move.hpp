@@ -32,7 +32,7 @@ std::optional<Finding> inverse_rotations_instead(const Evidence& evidence, const
                                                  const Answered& answered, const DiagnosisOptions& options);
 
 /// Judges findings mount_moved by their rivals. They are
-/// - replaced by scale_change if that explains the motions better,
+/// - replaced by scale_change if that explains the motions better, or as well with another unit,
 /// - dropped if a scale that wanders as those of odometries do explains the motions as well,
 /// - made uncertain if, under one of the readings of_both of both streams, no mount moves and one extrinsic
 ///   explains the motions about as well as one for each part between the moves,
