@@ -99,7 +99,29 @@ TEST(HiddenMistakes, RotationsThatWereMadeFromTheOthersAreNamed) {
   const Finding* finding = find(calibration, "same_stream");
   ASSERT_NE(finding, nullptr) << calibration.reason;
   EXPECT_FALSE(finding->certain);
-  EXPECT_NE(finding->message.find("rotations agree to rounding"), std::string::npos) << finding->message;
+  EXPECT_NE(finding->message.find("turn by the same angles to rounding"), std::string::npos)
+      << finding->message;
+}
+
+/// Made from a by any extrinsic, at stamps of its own between two poses of a.
+TEST(HiddenMistakes, AStreamThatWasInterpolatedFromTheOtherIsNamed) {
+  const testing::Streams right = drive(Terrain::rough);
+  const DualQuaternion wrong = to_dual_quaternion(Pose{rotation_exp({0.4, -1.2, 0.3}), {0.3, 1.2, -0.6}});
+  Trajectory made;
+  for (std::size_t i = 1; i < right.a.size(); i += 2) {
+    const StampedPose &from = right.a[i - 1], &to = right.a[i];
+    const Pose before = to_pose(from.pose), after = to_pose(to.pose);
+    const Pose between{before.rotation.slerp(0.3, after.rotation),
+                       before.translation + 0.3 * (after.translation - before.translation)};
+    made.push_back({from.time_us + std::llround(0.3 * static_cast<double>(to.time_us - from.time_us)),
+                    canonical_sign(normalized(to_dual_quaternion(between) * wrong))});
+  }
+  for (const bool exchanged : {false, true}) {
+    const Calibration calibration = exchanged ? calibrate(made, right.a) : calibrate(right.a, made);
+    const Finding* finding = find(calibration, "same_stream");
+    ASSERT_NE(finding, nullptr) << calibration.reason;
+    EXPECT_FALSE(finding->certain);
+  }
 }
 
 /// On a straight road neither sensor turns, which is no sign of a copy.

@@ -64,8 +64,8 @@ struct Finding {
   /// inverted_a|_b|_both, quaternion_order_a|_b|_both, scale, units, scale_change, clock_offset, clock_drift,
   /// time_unit, stamps_a|_b, axes_a|_b|_both, late_positions_a|_b, turning_scale_a|_b, plane_a|_b,
   /// mount_moved, unrelated, frozen_a|_b, missing_a|_b, flat_a|_b, same_stream, samples, wrong_samples,
-  /// undersampled_a|_b, held_a|_b, mixed_frames_a|_b, odometry, nominal, reversed_steps, too_little_motion.
-  /// docs/findings.md says what each means.
+  /// undersampled_a|_b, held_a|_b, mixed_frames_a|_b, odometry, nominal, reversed_steps, filled_a|_b,
+  /// too_little_motion. docs/findings.md says what each means.
   std::string code;
   bool certain = false;        ///< it fits clearly better; otherwise both remain possible
   std::string message;         ///< what was found, one sentence

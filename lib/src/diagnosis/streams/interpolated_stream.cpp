@@ -32,39 +32,49 @@ Kinds lines_of(const Trajectory& poses, const InterpolatedStreamOptions& options
   Kinds kinds;
   const std::size_t n = poses.size(), count = std::min(n, options.most), first = (n - count) / 2;
   for (std::size_t i = first + 1; i + 1 < first + count; ++i) {
-    const double before = to_seconds(poses[i].time_us - poses[i - 1].time_us),
-                 after = to_seconds(poses[i + 1].time_us - poses[i].time_us);
-    if (!(before > 0 && after > 0)) continue;
-    const Pose x = to_pose(poses[i - 1].pose), y = to_pose(poses[i].pose), z = to_pose(poses[i + 1].pose);
-    const double ratio = before / after;
-    const Eigen::Vector3d moved = y.translation - x.translation, moves = z.translation - y.translation;
-    const Eigen::Vector3d turned = rotation_log(x.rotation.conjugate() * y.rotation),
-                          turns = rotation_log(y.rotation.conjugate() * z.rotation);
-    // digits of the three poses, and of coordinates of a map
-    const double digits = options.digits * std::max(1.0, ratio) + options.rounding * y.translation.norm();
-    // how far a step differs from the one before, in units of what a straight one may
-    const auto bend = [&](const Eigen::Vector3d& here, const Eigen::Vector3d& next) {
-      return (ratio * next - here).norm() / (options.straight * here.norm() + digits);
-    };
-    const auto count_in = [&](Lines& lines, double motion, double bent) {
-      if (motion < 10 * digits) return;  // at rest
-      lines.seconds += before;
+    const std::optional<Bends> bends = bends_at(poses, i, options);
+    if (!bends) continue;
+    const auto count_in = [&](Lines& lines, const Bend& bend) {
+      if (bend.rests) return;
+      lines.seconds += bends->seconds;
       ++lines.moving;
-      lines.straight += bent < 1 ? 1 : 0;
-      lines.corners += bent > options.corner ? 1 : 0;
+      lines.straight += bend.bent < 1 ? 1 : 0;
+      lines.corners += bend.bent > options.corner ? 1 : 0;
     };
-    const double moved_on = bend(moved, moves), turned_on = bend(turned, turns);
-    // position and rotation by themselves, or along a screw
-    const double along_screw = bend(x.rotation.conjugate() * moved, y.rotation.conjugate() * moves);
-    count_in(kinds.poses, std::max(moved.norm(), turned.norm()),
-             std::max(turned_on, std::min(moved_on, along_screw)));
-    count_in(kinds.positions, moved.norm(), moved_on);
-    count_in(kinds.rotations, turned.norm(), turned_on);
+    count_in(kinds.poses, bends->pose);
+    count_in(kinds.positions, bends->position);
+    count_in(kinds.rotations, bends->rotation);
   }
   return kinds;
 }
 
 }  // namespace
+
+std::optional<Bends> bends_at(const Trajectory& poses, std::size_t i,
+                              const InterpolatedStreamOptions& options) {
+  const double before = to_seconds(poses[i].time_us - poses[i - 1].time_us),
+               after = to_seconds(poses[i + 1].time_us - poses[i].time_us);
+  if (!(before > 0 && after > 0)) return std::nullopt;
+  const Pose x = to_pose(poses[i - 1].pose), y = to_pose(poses[i].pose), z = to_pose(poses[i + 1].pose);
+  const double ratio = before / after;
+  const Eigen::Vector3d moved = y.translation - x.translation, moves = z.translation - y.translation;
+  const Eigen::Vector3d turned = rotation_log(x.rotation.conjugate() * y.rotation),
+                        turns = rotation_log(y.rotation.conjugate() * z.rotation);
+  // digits of the three poses, and of coordinates of a map
+  const double digits = options.digits * std::max(1.0, ratio) + options.rounding * y.translation.norm();
+  const auto bend = [&](const Eigen::Vector3d& here, const Eigen::Vector3d& next) {
+    return (ratio * next - here).norm() / (options.straight * here.norm() + digits);
+  };
+  const auto rests = [&](double motion) { return motion < 10 * digits; };
+  const double moved_on = bend(moved, moves), turned_on = bend(turned, turns);
+  // position and rotation by themselves, or along a screw
+  const double along_screw = bend(x.rotation.conjugate() * moved, y.rotation.conjugate() * moves);
+  return Bends{
+      {std::max(turned_on, std::min(moved_on, along_screw)), rests(std::max(moved.norm(), turned.norm()))},
+      {moved_on, rests(moved.norm())},
+      {turned_on, rests(turned.norm())},
+      before};
+}
 
 std::vector<Finding> interpolated_streams(const Trajectory& a, const Trajectory& b,
                                           const InterpolatedStreamOptions& options) {

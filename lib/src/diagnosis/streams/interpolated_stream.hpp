@@ -4,6 +4,8 @@
 // poses; or its positions alone, or its rotations alone.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "egocal/diagnosis/verdict.hpp"
@@ -25,6 +27,20 @@ struct InterpolatedStreamOptions {
   /// machines, or of noiseless simulations, are in both.
   double part = 0.4, other_part = 0.1;
 };
+
+/// How far the step after a pose differs from the one before, in units of what a straight one may.
+struct Bend {
+  double bent = 0;
+  bool rests = false;  ///< it hardly moves, or turns
+};
+struct Bends {
+  Bend pose, position, rotation;
+  double seconds = 0;  ///< since the pose before
+};
+
+/// Of a pose that is neither the first nor the last one. Empty where stamps repeat.
+std::optional<Bends> bends_at(const Trajectory& poses, std::size_t i,
+                              const InterpolatedStreamOptions& options = {});
 
 /// undersampled_a or undersampled_b, certain: of which stream, and its real rate.
 std::vector<Finding> interpolated_streams(const Trajectory& a, const Trajectory& b,

@@ -187,28 +187,15 @@ std::vector<Finding> in_one_frame(const Answered& answered, const StreamCheckOpt
   return {finding};
 }
 
-std::vector<Finding> made_from_each_other(const Fit& fit, double turning, const StreamCheckOptions& options) {
-  if (!(fit.rotation_median <= options.of_rounding)) return {};
-  const bool all = fit.translation_relative_median <= options.of_rounding;
-  if (!all && !(turning >= options.turning)) return {};
+std::vector<Finding> made_from_each_other(const Fit& fit, const StreamCheckOptions& options) {
+  if (fit.rotation_median > options.of_rounding || fit.translation_relative_median > options.of_rounding)
+    return {};
   Finding finding;
   finding.code = "same_stream";
-  if (all) {
-    finding.message =
-        "The motions agree to rounding, as those of two sensors never do: one stream was made from the "
-        "other, "
-        "or both were simulated without noise.";
-    finding.remedy =
-        "Give what each sensor measured by itself; ignore this where the streams were simulated.";
-  } else {
-    finding.message =
-        "The rotations agree to rounding, as those of two sensors never do: those of one stream were made "
-        "from "
-        "the other's, or both are of a third sensor. The rotation of the answer is the one that was put in.";
-    finding.remedy =
-        "Give what each sensor measured by itself; ignore this where the rotations were simulated without "
-        "noise.";
-  }
+  finding.message =
+      "The motions agree to rounding, as those of two sensors never do: one stream was made from the other, "
+      "or both were simulated without noise.";
+  finding.remedy = "Give what each sensor measured by itself; ignore this where the streams were simulated.";
   return {finding};
 }
 

@@ -33,8 +33,6 @@ struct StreamCheckOptions {
   /// Half of the motions agree to less [rad, and as a part of their length]: rounding, and a hundredth of
   /// what two sensors leave.
   double of_rounding = 1e-5;
-  /// Rotations alone show a copy where the typical motion turns by this [rad]: a thousand times the above.
-  double turning = 0.01;
   bool metres = true;  ///< what the lengths of the streams are in, or units of their own
 };
 
@@ -50,10 +48,8 @@ std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, con
 /// frame; where poses were moved to the vehicle's frame before, the answer is not the mounting.
 std::vector<Finding> in_one_frame(const Answered& answered, const StreamCheckOptions& options = {});
 
-/// same_stream, uncertain: the motions agree to rounding, or their rotations do. One stream was made from the
-/// other, and whatever made it is the answer; or both were simulated without noise. turning: angle of the
-/// typical motion [rad].
-std::vector<Finding> made_from_each_other(const Fit& fit, double turning,
-                                          const StreamCheckOptions& options = {});
+/// same_stream, uncertain: the motions agree to rounding. One stream was made from the other, and whatever
+/// made it is the answer; or both were simulated without noise.
+std::vector<Finding> made_from_each_other(const Fit& fit, const StreamCheckOptions& options = {});
 
 }  // namespace egocal::detail

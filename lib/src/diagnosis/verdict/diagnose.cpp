@@ -22,6 +22,7 @@
 #include "diagnosis/motions/answer_change.hpp"
 #include "diagnosis/motions/fit.hpp"
 #include "diagnosis/motions/standing_still.hpp"
+#include "diagnosis/streams/copied_rotations.hpp"
 #include "diagnosis/streams/interpolated_stream.hpp"
 #include "diagnosis/streams/mixed_frames.hpp"
 #include "diagnosis/streams/pace.hpp"
@@ -86,9 +87,8 @@ void add_faults_of_poses(const Evidence& evidence, const Answered& answered, con
     findings.insert(findings.begin(), *std::move(mixed));
 }
 
-/// That one stream was made from the other explains an answer that is the identity, too. turning: angle of
-/// the typical motion [rad].
-void add_same_stream(const Answered& answered, double turning, const DiagnosisOptions& options,
+/// That one stream was made from the other explains an answer that is the identity, too.
+void add_same_stream(const Evidence& evidence, const Answered& answered, const DiagnosisOptions& options,
                      Diagnosis& result) {
   StreamCheckOptions checks;
   checks.metres = options.unit == LengthUnit::metres;
@@ -98,10 +98,14 @@ void add_same_stream(const Answered& answered, double turning, const DiagnosisOp
     checks.known_translation *= of_a_metre;
   }
   if (std::any_of(result.findings.begin(), result.findings.end(), certain_of_either)) return;
-  for (const std::vector<Finding>& found :
-       {made_from_each_other(result.fit, turning), in_one_frame(answered, checks)})
-    if (!has(result.findings, "same_stream"))
-      result.findings.insert(result.findings.end(), found.begin(), found.end());
+  std::vector<Finding> found = made_from_each_other(result.fit);
+  if (found.empty())
+    if (std::optional<Finding> rotations = copied_rotations(evidence.streams.a, evidence.streams.b,
+                                                            evidence.clock, evidence.streams.max_gap))
+      found.push_back(*std::move(rotations));
+  if (found.empty()) found = in_one_frame(answered, checks);
+  if (!has(result.findings, "same_stream"))
+    result.findings.insert(result.findings.end(), found.begin(), found.end());
 }
 
 /// A speed that no vehicle has, unless the streams are read otherwise: the pace is that of inverse poses
@@ -155,7 +159,7 @@ void add_what_is_beside(const Foreseen& foreseen, const DiagnosisOptions& option
   const Evidence& evidence = foreseen.evidence;
   const PairingOptions& pairing = foreseen.pairing;
   name_wrong_scale(evidence, pairing, answered, options, result.findings);
-  add_same_stream(answered, evidence.given.explained.motions.rotation, options, result);
+  add_same_stream(evidence, answered, options, result);
   add_impossible_pace(evidence, options, result.findings);
   look_at_times(foreseen, answered, result);
   name_small_scale(evidence, options, answered, result);

@@ -126,6 +126,7 @@ std::string not_known_yet(const Known& known, const DiagnosisOptions& options) {
 bool stream_fault(const Finding& finding) {
   return finding.code == "frozen_a" || finding.code == "frozen_b" || finding.code == "flat_a" ||
          finding.code == "flat_b" || finding.code.starts_with("stamps_") ||
+         finding.code.starts_with("filled_") ||
          ((finding.code == "same_stream" || finding.code == "time_unit") && finding.certain);
 }
 

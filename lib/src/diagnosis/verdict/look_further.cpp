@@ -17,6 +17,7 @@
 #include "diagnosis/mount/mount.hpp"
 #include "diagnosis/mount/swaying_mount.hpp"
 #include "diagnosis/streams/contradicting_parts.hpp"
+#include "diagnosis/streams/filled_gaps.hpp"
 #include "diagnosis/streams/one_drive.hpp"
 #include "diagnosis/streams/turning_alike.hpp"
 #include "diagnosis/verdict/turning_noise.hpp"
@@ -117,6 +118,8 @@ std::optional<Finding> last_of_all(const Evidence& evidence, const Answered& ans
                                    const MovedMount& moved, const DiagnosisOptions& options) {
   std::optional<Finding> last;
   if (answered.problem.mode != Mode::planar) {
+    last = filled_gaps(evidence, answered.T_a_b);
+    if (last) return last;
     last = back_and_forth(evidence.instants, answered, options);
     if (!last) last = swaying_mount(evidence.instants, answered, options);
     if (!last) last = following_mount(evidence.instants, evidence.stride, answered, options);

@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/streams/filled_gaps.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/explanations/row_changes.hpp"
+#include "diagnosis/streams/interpolated_stream.hpp"
+#include "diagnosis/words/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
+#include "statistics/quantile.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+/// Poses of a stream, on one line [s].
+struct Line {
+  double begin = 0, end = 0;
+};
+
+std::vector<Line> lines_of(const Trajectory& rows, const Times& times, const FilledGapsOptions& options) {
+  std::vector<Line> lines;
+  const std::size_t n = rows.size(), count = std::min(n, options.most), first = (n - count) / 2;
+  std::size_t straight = 0;
+  for (std::size_t i = first + 1; i + 1 <= first + count; ++i) {
+    const std::optional<Bends> bends = i + 1 < first + count ? bends_at(rows, i) : std::nullopt;
+    if (bends && !bends->pose.rests && bends->pose.bent < 1) {
+      ++straight;
+      continue;
+    }
+    if (straight >= options.least) lines.push_back({times[i - straight - 1], times[i]});
+    straight = 0;
+  }
+  return lines;
+}
+
+/// The first instant at this time or later.
+std::size_t instant_at(const Instants& instants, double time) {
+  std::size_t from = 0, to = instants.size();
+  while (from < to) {
+    const std::size_t middle = from + (to - from) / 2;
+    if (instants.time(middle) < time)
+      from = middle + 1;
+    else
+      to = middle;
+  }
+  return from;
+}
+
+struct PairOfMotions {
+  Pose a, b;
+
+  double length() const { return std::max(a.translation.norm(), b.translation.norm()); }
+  double angle() const { return std::max(rotation_log(a.rotation).norm(), rotation_log(b.rotation).norm()); }
+  /// What it leaves of the answer.
+  Residual left(const Pose& T) const {
+    const Pose rest = inverse(a * T) * (T * b);
+    return {rotation_log(rest.rotation).norm(), rest.translation.norm()};
+  }
+};
+
+PairOfMotions motion_between(const Instants& instants, std::size_t from, std::size_t to) {
+  const PosePair begin = instants.at(from), end = instants.at(to);
+  return {inverse(to_pose(begin.a)) * to_pose(end.a), inverse(to_pose(begin.b)) * to_pose(end.b)};
+}
+
+/// What motions over as many instants leave, of those that move as far, or turn as far; while the sensors
+/// stand there is little to leave. Empty where there are few.
+std::optional<Residual> usual_of(const Instants& instants, std::size_t span, const PairOfMotions& motion,
+                                 const Pose& T, const FilledGapsOptions& options) {
+  std::vector<double> rotation, translation;
+  const std::size_t each = std::max<std::size_t>(1, instants.size() / options.compared);
+  for (std::size_t i = 0; i + span < instants.size(); i += each) {
+    const PairOfMotions here = motion_between(instants, i, i + span);
+    if (here.length() < options.as_far * motion.length() && here.angle() < options.as_far * motion.angle())
+      continue;
+    const Residual left = here.left(T);
+    rotation.push_back(left.rotation);
+    translation.push_back(left.translation);
+  }
+  if (rotation.size() < options.fewest) return std::nullopt;
+  return Residual{quantile(rotation, options.usual), quantile(translation, options.usual)};
+}
+
+/// Whether one half of the line contradicts the other stream, where other motions leave little.
+bool contradicts(const Instants& instants, const Line& line, const Pose& T,
+                 const FilledGapsOptions& options) {
+  const std::size_t from = instant_at(instants, line.begin), to = instant_at(instants, line.end);
+  if (to >= instants.size() || to < from + 2) return false;
+  const std::size_t middle = from + (to - from) / 2;
+  for (const auto& [begin, end] : {std::pair{from, middle}, std::pair{middle, to}}) {
+    const PairOfMotions motion = motion_between(instants, begin, end);
+    const std::optional<Residual> usual = usual_of(instants, end - begin, motion, T, options);
+    const Residual left = motion.left(T);
+    if (!usual) continue;
+    if (left.rotation > std::max(options.times * usual->rotation, options.least_left) ||
+        left.translation > std::max(options.times * usual->translation, options.least_left * motion.length()))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::optional<Finding> filled_gaps(const Evidence& evidence, const DualQuaternion& T_a_b,
+                                   const FilledGapsOptions& options) {
+  const Pose T = to_pose(T_a_b);
+  for (const Side side : {Side::b, Side::a}) {
+    const Trajectory& rows = rows_of(evidence, side);
+    const Times times(rows, evidence.streams.a.front().time_us,
+                      side == Side::a ? ClockModel{} : evidence.clock);
+    std::vector<Line> filled;
+    for (const Line& line : lines_of(rows, times, options))
+      if (contradicts(evidence.instants, line, T, options)) filled.push_back(line);
+    if (filled.empty()) continue;
+    const char which = side == Side::a ? 'a' : 'b';
+    double seconds = 0;
+    for (const Line& line : filled) seconds += line.end - line.begin;
+    const std::string others =
+        filled.size() > 1 ? format(", and %zu times more, %.1f s in all", filled.size() - 1, seconds) : "";
+    Finding finding;
+    finding.code = std::string("filled_") + which;
+    finding.certain = true;
+    finding.time = filled.front().begin;
+    say(finding,
+        format("From %.1f to %.1f s after the start%s, the poses of %s lie on a straight line that the other "
+               "sensor does not follow: they were filled in where %s had none",
+               filled.front().begin, filled.front().end, others.c_str(), mark(which), mark(which)),
+        format("Give the poses of %s as they were measured, without those that fill gaps.", mark(which)),
+        ".");
+    return finding;
+  }
+  return std::nullopt;
+}
+
+}  // namespace egocal::detail
