@@ -11,6 +11,7 @@
 #include "egocal/geometry/pose.hpp"
 #include "linear_algebra/normal_equations.hpp"
 #include "statistics/median.hpp"
+#include "statistics/quantile.hpp"
 
 namespace egocal::detail {
 
@@ -75,7 +76,7 @@ template <typename Size>
 double quantile_of(const std::vector<FollowedChange>& changes, double part, const Size& size) {
   std::vector<double> sizes;
   for (const FollowedChange& change : changes) sizes.push_back(size(change));
-  return order_statistic_in_place(sizes, static_cast<std::size_t>(part * static_cast<double>(sizes.size())));
+  return quantile(sizes, part);
 }
 
 BehaviourCourse course_of(const Behaviour& behaviour, const Behaviour& usual,

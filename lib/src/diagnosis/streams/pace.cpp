@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "diagnosis/words/wording.hpp"
-#include "statistics/order_statistic.hpp"
+#include "statistics/quantile.hpp"
 
 namespace egocal::detail {
 
@@ -37,11 +37,6 @@ std::optional<Finding> impossible_pace(const Motions& motions, double duration, 
     turns.push_back(std::min(motion.angle_a, motion.angle_b) / duration);
     accelerations.push_back(speeds.back() * turns.back());
   }
-  const auto quantile = [](std::vector<double>& values, double part) {
-    return order_statistic(
-        values,
-        std::min(values.size() - 1, static_cast<std::size_t>(part * static_cast<double>(values.size()))));
-  };
   const double speed = quantile(speeds, 0.5), turning = quantile(turns, 0.5);
   const bool fast = metres && (speed > options.most_speed ||
                                (speed > options.usual_speed &&
