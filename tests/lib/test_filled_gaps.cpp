@@ -18,7 +18,7 @@ namespace {
 using testing::drive;
 using testing::find;
 
-enum class Fill { straight_lines, last_velocity };
+enum class Fill { straight_lines, last_velocity, last_position };
 
 /// Poses [begin, begin + count) of three gaps.
 Trajectory filled(const Trajectory& right, Fill fill) {
@@ -29,20 +29,23 @@ Trajectory filled(const Trajectory& right, Fill fill) {
                to = to_pose(right[begin + count].pose);
     for (std::size_t i = 0; i < count; ++i) {
       const double part = static_cast<double>(i + 1) / static_cast<double>(count + 1);
-      const Eigen::Vector3d moved =
-          fill == Fill::straight_lines
-              ? Eigen::Vector3d(part * (to.translation - from.translation))
-              : Eigen::Vector3d(static_cast<double>(i + 1) * (from.translation - before.translation));
-      const Rotation rotation =
-          fill == Fill::straight_lines ? Rotation(from.rotation.slerp(part, to.rotation)) : from.rotation;
-      result[begin + i].pose = canonical_sign(to_dual_quaternion(Pose{rotation, from.translation + moved}));
+      const double steps = static_cast<double>(i + 1);
+      Pose pose = to_pose(right[begin + i].pose);
+      if (fill == Fill::straight_lines)
+        pose = {from.rotation.slerp(part, to.rotation),
+                from.translation + part * (to.translation - from.translation)};
+      else if (fill == Fill::last_velocity)
+        pose = {from.rotation, from.translation + steps * (from.translation - before.translation)};
+      else
+        pose.translation = from.translation;
+      result[begin + i].pose = canonical_sign(to_dual_quaternion(pose));
     }
   }
   return result;
 }
 
 TEST(FilledGaps, AreNamedInEitherStream) {
-  for (const Fill fill : {Fill::straight_lines, Fill::last_velocity})
+  for (const Fill fill : {Fill::straight_lines, Fill::last_velocity, Fill::last_position})
     for (const std::uint64_t seed : {1, 2}) {
       const testing::Streams right = drive(Terrain::free, seed);
       for (const bool in_a : {false, true}) {

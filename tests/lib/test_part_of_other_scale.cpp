@@ -40,11 +40,11 @@ Trajectory in_feet_from(double part, const Trajectory& right, const Eigen::Vecto
 TEST(PartOfOtherScale, IsNamed) {
   for (const Terrain terrain : {Terrain::rough, Terrain::free})
     for (const std::uint64_t seed : {1, 2})
-      for (const double part : {0.35, 0.6}) {
+      for (const double part : {0.35, 0.6, 0.8}) {
         const testing::Streams right = half_a_minute(terrain, seed);
         const std::string where = std::to_string(seed) + " " + std::to_string(part);
         const Calibration calibration = calibrate(right.a, in_feet_from(part, right.b, {0, 0, 0}));
-        EXPECT_EQ(calibration.verdict, Verdict::contradictory) << where << calibration.reason;
+        EXPECT_GE(calibration.verdict, Verdict::doubtful) << where << calibration.reason;
         const Finding* finding = find(calibration, "scale_change");
         ASSERT_NE(finding, nullptr) << where << calibration.reason;
         EXPECT_TRUE(finding->certain);

@@ -24,13 +24,21 @@ struct Line {
   double begin = 0, end = 0;
 };
 
+/// Whether the pose goes on as the last one did: all of it, or its position alone, which may also stay.
+bool goes_on(const Bends& bends) {
+  const bool moves_on = !bends.pose.rests && bends.pose.bent < 1;
+  const bool position_moves_on = !bends.position.rests && bends.position.bent < 1;
+  const bool position_stays = bends.position.rests && !bends.rotation.rests;
+  return moves_on || position_moves_on || position_stays;
+}
+
 std::vector<Line> lines_of(const Trajectory& rows, const Times& times, const FilledGapsOptions& options) {
   std::vector<Line> lines;
   const std::size_t n = rows.size(), count = std::min(n, options.most), first = (n - count) / 2;
   std::size_t straight = 0;
   for (std::size_t i = first + 1; i + 1 <= first + count; ++i) {
     const std::optional<Bends> bends = i + 1 < first + count ? bends_at(rows, i) : std::nullopt;
-    if (bends && !bends->pose.rests && bends->pose.bent < 1) {
+    if (bends && goes_on(*bends)) {
       ++straight;
       continue;
     }
@@ -129,8 +137,9 @@ std::optional<Finding> filled_gaps(const Evidence& evidence, const DualQuaternio
     finding.certain = true;
     finding.time = filled.front().begin;
     say(finding,
-        format("From %.1f to %.1f s after the start%s, the poses of %s lie on a straight line that the other "
-               "sensor does not follow: they were filled in where %s had none",
+        format("From %.1f to %.1f s after the start%s, the positions of %s lie on a straight line, or stay, "
+               "which "
+               "the other sensor does not: they were filled in where %s had none",
                filled.front().begin, filled.front().end, others.c_str(), mark(which), mark(which)),
         format("Give the poses of %s as they were measured, without those that fill gaps.", mark(which)),
         ".");

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Parts of a stream that were filled in where it had no poses: by straight lines, or by the last velocity.
+// Parts of a stream that were filled in where it had no poses, or no positions: by straight lines, by the
+// last velocity, or by what was there last.
 #pragma once
 
 #include <optional>

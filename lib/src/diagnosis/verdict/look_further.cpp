@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
 #include "diagnosis/explanations/contents/inverted_and_moved.hpp"
@@ -23,6 +25,7 @@
 #include "diagnosis/verdict/turning_noise.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal::detail {
 
@@ -40,6 +43,12 @@ Finding unexplained(const UnexplainedPart& part) {
   return finding;
 }
 
+struct ContradictingTenthsOptions {
+  std::size_t least = 100;  ///< motions of the drive: ten of each tenth
+  double of_way = 0.5;      ///< median residual of a tenth, as a part of the way
+  double times = 3;         ///< and in metres, as a multiple of the median tenth
+};
+
 /// Where the scale of less than half of the drive is another one, its tenths show it. While the sensors stand
 /// any residual is a large part of the way, but a small one in metres.
 bool scale_may_change(const Fit& fit, const DiagnosisOptions& options) {
@@ -50,6 +59,24 @@ bool scale_may_change(const Fit& fit, const DiagnosisOptions& options) {
                   tenth.translation_relative >
                       std::max(options.scale_change_misfit, options.scale_change_in_tenth * usual);
          });
+}
+
+/// Tenths whose translations contradict the answer, one after the other, while those of most do not. Where
+/// the sensors stand, any residual is a large part of the way, but no larger in metres.
+std::optional<UnexplainedPart> contradicting_tenths(const Fit& fit, std::size_t motions) {
+  const ContradictingTenthsOptions options;
+  if (motions < options.least || fit.tenths.empty()) return std::nullopt;
+  std::vector<double> lengths;
+  for (const FitTenth& tenth : fit.tenths)
+    if (std::isfinite(tenth.translation_median)) lengths.push_back(tenth.translation_median);
+  const double usual = median(std::move(lengths));
+  const auto contradicts = [&](const FitTenth& tenth) {
+    return tenth.translation_relative > options.of_way && tenth.translation_median > options.times * usual;
+  };
+  const auto first = std::find_if(fit.tenths.begin(), fit.tenths.end(), contradicts);
+  if (first == fit.tenths.end()) return std::nullopt;
+  const auto last = std::find_if_not(first, fit.tenths.end(), contradicts);
+  return UnexplainedPart{first->begin, std::prev(last)->end};
 }
 
 /// What the motions leave is the noise of their steps, and the translations agree.
@@ -118,8 +145,6 @@ std::optional<Finding> last_of_all(const Evidence& evidence, const Answered& ans
                                    const MovedMount& moved, const DiagnosisOptions& options) {
   std::optional<Finding> last;
   if (answered.problem.mode != Mode::planar) {
-    last = filled_gaps(evidence, answered.T_a_b);
-    if (last) return last;
     last = back_and_forth(evidence.instants, answered, options);
     if (!last) last = swaying_mount(evidence.instants, answered, options);
     if (!last) last = following_mount(evidence.instants, evidence.stride, answered, options);
@@ -141,6 +166,11 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     findings.insert(findings.begin(), wrong.begin(), wrong.end());
     return;
   }
+  if (answered.problem.mode != Mode::planar)
+    if (std::optional<Finding> filled = filled_gaps(evidence, answered.T_a_b)) {
+      findings.insert(findings.begin(), *std::move(filled));
+      return;
+    }
   if (std::optional<Finding> apart = turning_apart(evidence, answered, fit, options, misfit)) {
     findings.push_back(*std::move(apart));
     return;
@@ -178,8 +208,10 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
       findings.insert(findings.begin(), *std::move(scale));
       return;
     }
-  if (const std::optional<UnexplainedPart> part =
-          unexplained_part(evidence.given.explained.motions, evidence.given.explained.fit.T)) {
+  std::optional<UnexplainedPart> part =
+      unexplained_part(evidence.given.explained.motions, evidence.given.explained.fit.T);
+  if (!part && wrong.empty()) part = contradicting_tenths(fit, evidence.given.explained.motions.all.size());
+  if (part) {
     std::optional<Finding> scale =
         part_of_other_scale(evidence.given.explained, part->begin, part->end, options);
     findings.push_back(scale ? *std::move(scale) : unexplained(*part));
