@@ -118,6 +118,28 @@ TEST(GoalSpread, AGoalIsReachedWhereAllDirectionsAreWithinItTogether) {
       detail::goal_of(answered, {each.rotation * 2.64 / 1.96, each.translation * 2.64 / 1.96, {}}).reached);
 }
 
+/// Time left over that of the drive, of goals `times` smaller than what was just reached.
+double time_left(const Answered& answered, double times) {
+  const auto at = [&](double scale) { return detail::goal_of(answered, {0.01 * scale, 0.1 * scale, {}}); };
+  double low = 1e-6, high = 1e6;
+  for (int i = 0; i < 80; ++i) {
+    const double middle = std::sqrt(low * high);
+    (at(middle).reached ? high : low) = middle;
+  }
+  return at(low / times).seconds_left.value_or(NAN) / answered.seconds;
+}
+
+TEST(GoalSpread, TheTimeLeftSaysWhatIsUsuallyLeft) {
+  const Answered answered = answered_after(Terrain::free, 1);
+  EXPECT_NEAR(time_left(answered, std::sqrt(2.0)), 1, 0.05);
+  // near the goal chance decides, so no time left is stated as nothing
+  EXPECT_GT(time_left(answered, 1.0001), 0.1);
+  EXPECT_LT(time_left(answered, 1.0001), 0.2);
+  // four times as well takes 15 times as long where information grows steadily: it seldom does
+  EXPECT_GT(time_left(answered, 4), 5);
+  EXPECT_LT(time_left(answered, 4), 9);
+}
+
 TEST(GoalSpread, IsTheReportedOneWhereNothingElseIsKnown) {
   Answered answered = answered_after(Terrain::free, 1);
   answered.problem.blocks.resize(5);

@@ -180,6 +180,11 @@ struct GoalSpreadOptions {
   /// Spreads fall with this power of the time. With it the median of the estimated to the real time left is
   /// one in the study.
   double exponent = 0.51;
+  /// Time left over the time of the drive, at least: less says no more than that the goal is near, as spreads
+  /// change by that part by chance. And the power with which one that is longer than the drive counts: mostly
+  /// a direction was hardly shown yet, and other parts of a drive show it sooner. Both were chosen on 100
+  /// drives of 25 kinds (docs/trust_measured.md, "Goals").
+  double least_time_left = 0.15, power_of_long_times = 0.7;
 };
 
 /// Whether the answer stays where it is without a part of the drive.

@@ -47,6 +47,12 @@ double excess_of(const std::vector<double>& ratios, const GoalSpreadOptions& tun
   return high;
 }
 
+/// Time left over that of the drive from what it would be if all information grew steadily.
+double likely_time_left(double steady, const GoalSpreadOptions& tuning) {
+  const double left = std::hypot(steady, tuning.least_time_left);
+  return left > 1 ? std::pow(left, tuning.power_of_long_times) : left;
+}
+
 }  // namespace
 
 double with_further_parts(double stddev, const Answered& answered, std::size_t direction) {
@@ -82,7 +88,8 @@ Goal goal_of(const Answered& answered, const GoalOptions& options, const GoalSpr
     const double excess = excess_of(ratios, tuning);
     for (auto& [ratio, i] : missing) ratio *= excess / worst;  // the worst one is known well enough at 1
     if (answered.seconds > 0)
-      goal.seconds_left = answered.seconds * (std::pow(excess, 1 / tuning.exponent) - 1);
+      goal.seconds_left =
+          answered.seconds * likely_time_left(std::pow(excess, 1 / tuning.exponent) - 1, tuning);
   }
   goal.next = next_manoeuvre(answered, options, missing, tuning.exponent);
   return goal;

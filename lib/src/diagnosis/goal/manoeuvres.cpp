@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "diagnosis/goal/motion_information.hpp"
 #include "egocal/problem/cost.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -89,11 +90,11 @@ Matrix6d information(const Matrix8d& Q, const DualQuaternion& q) {
   return T.transpose() * lagrangian_matrix(Q, least_squares_multipliers(Q, q)) * T;
 }
 
-/// Rotations of a: D holds sum of |a_v|^2 I - a_v a_v' twice over, seen through the extrinsic. Its direction
-/// of least curvature for the translation is the axis that was turned about most.
-Body body_of(const Answered& answered, const Matrix8d& Q) {
+/// shown: information() of Q. Rotations of a: D holds sum of |a_v|^2 I - a_v a_v' twice over, seen through
+/// the extrinsic. Its direction of least curvature for the translation is the axis that was turned about
+/// most.
+Body body_of(const Answered& answered, const Matrix8d& Q, const Matrix6d& shown) {
   Body body;
-  const Matrix6d shown = information(Q, answered.T_a_b);
   const Eigen::Vector3d up = symmetric_eigen<3>(shown.topLeftCorner<3, 3>()).vectors.col(0);
   // rotations about the way forward change the translations least
   Eigen::Vector3d forward = symmetric_eigen<3>(shown.bottomRightCorner<3, 3>()).vectors.col(0);
@@ -129,19 +130,16 @@ const std::array<Eigen::Vector3d, motions_each>& waves() {
 /// say whether it does.
 Matrix6d information_of(const Manoeuvre& manoeuvre, const Body& body, const Answered& answered,
                         double seconds, bool vehicle) {
-  Statistics statistics;
-  const DualQuaternion T = answered.T_a_b, back = conjugate(T);
+  MotionProducts sums;
   const Eigen::Matrix3d axes = vehicle ? body.axes : Eigen::Matrix3d::Identity();
   for (const Eigen::Vector3d& wave : waves()) {
     Eigen::Vector3d turn = std::min(seconds, turn_seconds) * manoeuvre.turn, travel = manoeuvre.travel;
     if (manoeuvre.turns_alternate) turn = turn.cwiseProduct(wave);
     if (!vehicle) travel = travel.cwiseProduct(Eigen::Vector3d(wave.z(), wave.x(), wave.y()));
-    const DualQuaternion a = to_dual_quaternion({rotation_exp(axes * turn), body.length * (axes * travel)});
-    statistics.add(a, back * a * T);
+    sums.add({rotation_exp(axes * turn), body.length * (axes * travel)});
   }
-  // these motions leave no residuals, so the multipliers are zero
-  const Matrix86d basis = frame_a_basis(T);
-  return basis.transpose() * cost_matrix(statistics, answered.problem.balance) * basis;
+  const Eigen::Vector3d t = to_pose(answered.T_a_b).translation;
+  return information_of(sums, t, answered.problem.balance) / motions_each;
 }
 
 /// How long one motion took [s]: they begin at every instant.
@@ -156,10 +154,9 @@ double seconds_of_a_motion(const Answered& answered) {
 /// the noise cancels: a manoeuvre has as much of it in a second.
 class Forecast {
  public:
-  /// Q: cost_matrix() of the problem.
-  Forecast(const Answered& answered, const Matrix8d& Q, const GoalOptions& options)
-      : seconds_(answered.seconds > 0 ? answered.seconds : manoeuvre_seconds) {
-    known_ = information(Q, answered.T_a_b);
+  /// Q: cost_matrix() of the problem. shown: its information().
+  Forecast(const Answered& answered, const Matrix8d& Q, const Matrix6d& shown, const GoalOptions& options)
+      : known_(shown), seconds_(answered.seconds > 0 ? answered.seconds : manoeuvre_seconds) {
     // what rotation noise alone makes of the curvature is no knowledge
     const DualQuaternion& T = answered.T_a_b;
     const double rotation_noise = std::max(0.0, T.real.dot(Q.bottomRightCorner<4, 4>() * T.real));
@@ -183,31 +180,44 @@ class Forecast {
     wanted_.tail<3>().setConstant(options.rotation / std::sqrt(unit));
   }
 
-  /// Standard deviation of a direction over the wanted one after some seconds of a manoeuvre. information:
-  /// mean of its motions.
-  double after(double seconds, const Matrix6d& information, const Missing& missing, double exponent) const {
+  /// The variance of a direction that is this many times the wanted standard deviation: inverse of ratio().
+  double variance_at(double ratio, const Missing& missing, double exponent) const {
+    const auto k = static_cast<int>(missing.second);
+    return std::isfinite(missing.first) ? now_[k] * std::pow(ratio / missing.first, 1 / exponent)
+                                        : std::pow(ratio * wanted_[k], 2);
+  }
+  /// Whether the variance of direction k falls to that after some seconds of a manoeuvre. information: mean
+  /// of its motions.
+  bool falls_to(double variance, double seconds, const Matrix6d& information, int k) const {
     Matrix6d factors = regular(known_ + seconds / seconds_ * information);
-    if (!factorise(factors)) return INFINITY;
-    Vector6d variances = Vector6d::Unit(static_cast<int>(missing.second));  // the others are not looked at
-    solve_factorised(factors, variances);
-    return ratio(variances, missing, exponent);
+    if (variance * factors(k, k) < 1) return false;  // no variance is below the inverse of its own curvature
+    if (!factorise(factors)) return false;
+    Vector6d column = Vector6d::Unit(k);
+    solve_factorised(factors, column);
+    return std::abs(column[k]) <= variance;
   }
   double after_the_same(double seconds, const Missing& missing, double exponent) const {
     return ratio(now_ / (1 + seconds / seconds_), missing, exponent);
   }
 
-  /// By how much one manoeuvre brings all missing directions nearer to the goal.
-  double gain(const Matrix6d& information, const std::vector<Missing>& missing, double exponent) const {
+  /// How far all missing directions are from the goal, now and after one manoeuvre.
+  double needs_now(const std::vector<Missing>& missing, double exponent) const {
+    return needs(now_, missing, exponent);
+  }
+  double needs_after(const Matrix6d& information, const std::vector<Missing>& missing,
+                     double exponent) const {
     const Vector6d then = inverse(known_ + manoeuvre_seconds / seconds_ * information).diagonal();
-    double sum = 0;
-    for (const Missing& direction : missing)
-      sum += need(ratio(now_, direction, exponent)) - need(ratio(then, direction, exponent));
-    return sum;
+    return needs(then, missing, exponent);
   }
 
  private:
   /// Logarithm of how far a direction is from the goal; beyond it a reserve counts less and less.
   static double need(double ratio) { return 0.5 * std::log1p(std::pow(std::min(ratio, hardly_known), 2)); }
+  double needs(const Vector6d& variances, const std::vector<Missing>& missing, double exponent) const {
+    double sum = 0;
+    for (const Missing& direction : missing) sum += need(ratio(variances, direction, exponent));
+    return sum;
+  }
   double ratio(const Vector6d& variances, const Missing& missing, double exponent) const {
     const auto k = static_cast<int>(missing.second);
     // from its own spread, where it has one, and as spreads fall with the information
@@ -261,9 +271,10 @@ std::vector<bool> worth_a_detour(const Forecast& forecast, const std::vector<Mat
     // twice the information of the same driving, where that has no end
     const double enough =
         ends ? 1 : std::pow(most_of_the_time, exponent) * forecast.after_the_same(tried, direction, exponent);
+    const double variance = forecast.variance_at(enough, direction, exponent);
     bool any = false;
     for (std::size_t m = 0; m < shown.size(); ++m) {
-      if (forecast.after(tried, shown[m], direction, exponent) > enough) continue;
+      if (!forecast.falls_to(variance, tried, shown[m], static_cast<int>(direction.second))) continue;
       any = true;
       gained[m] = std::max(gained[m], as_before);
     }
@@ -282,24 +293,26 @@ std::string next_manoeuvre(const Answered& answered, const GoalOptions& options,
   if (problem.mode == Mode::planar) return "Drive curves both ways: a figure eight, twice.";
   const Matrix8d Q = cost_matrix(problem);
   if (!(Q.diagonal().maxCoeff() > 0)) return "Move, with turns.";
-  const Body body = body_of(answered, Q);
+  const Matrix6d known = information(Q, answered.T_a_b);
+  const Body body = body_of(answered, Q, known);
   const Platform platform = options.platform.value_or(answered.platform);
   const std::vector<Manoeuvre> manoeuvres = catalogue(platform);
   const double each = seconds_of_a_motion(answered);
   std::vector<Matrix6d> shown;
+  shown.reserve(manoeuvres.size());
   for (const Manoeuvre& manoeuvre : manoeuvres)
     shown.push_back(information_of(manoeuvre, body, answered, each, platform == Platform::car));
-  const Forecast forecast(answered, Q, options);
+  const Forecast forecast(answered, Q, known, options);
 
   std::vector<bool> worth(shown.size(), true);
   if (answered.seconds > 0) worth = worth_a_detour(forecast, shown, missing, answered.seconds, exponent);
 
   const char* best = nullptr;
-  double most = 0;
+  double least = forecast.needs_now(missing, exponent);
   for (std::size_t m = 0; m < shown.size(); ++m) {
-    const double gain = worth[m] ? forecast.gain(shown[m], missing, exponent) : 0;
-    if (gain > most) {
-      most = gain;
+    const double needs = worth[m] ? forecast.needs_after(shown[m], missing, exponent) : least;
+    if (needs < least) {
+      least = needs;
       best = manoeuvres[m].words;
     }
   }
