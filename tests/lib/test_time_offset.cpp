@@ -9,6 +9,7 @@
 #include "../support/shaken_car.hpp"
 #include "../support/simulated_drive.hpp"
 #include "egocal/evaluation/errors.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/online/answer.hpp"
 
 namespace egocal::test_time_offset {
@@ -404,6 +405,97 @@ TEST(ClockOffset, ContinuesFromItsStateInTheMiddleOfASearch) {
   }
   drive.finish();
   EXPECT_EQ(sum_blocks(drive.problem().blocks).dual_rows, sum_blocks(expected.blocks).dual_rows);
+}
+
+/// Two streams of one rate [Hz], b's clock 5 s behind.
+Streams of_rate(double rate, int seconds) {
+  Streams streams = testing::simulated_drive({.terrain = Terrain::free,
+                                              .poses = static_cast<int>(rate * seconds),
+                                              .rate = rate,
+                                              .speed = 2,
+                                              .relative_noise = 0.01,
+                                              .seed = 4});
+  streams.b = shifted(streams.b, -5);
+  return streams;
+}
+
+Trajectory poses_in(const Trajectory& path, std::int64_t begin_us, std::int64_t end_us) {
+  Trajectory result;
+  for (const StampedPose& pose : path)
+    if (pose.time_us > begin_us && pose.time_us <= end_us) result.push_back(pose);
+  return result;
+}
+
+/// Slow streams have few poses until an estimate should come into force: the rest was done in one step, 16 ms
+/// at 10 Hz.
+TEST(ClockOffset, NoPoseWaitsForMoreThanItsShareOfAnEstimate) {
+  constexpr std::int64_t window_us = 60'000'000;
+  const PairingOptions options;
+  for (const double rate : {5.0, 10.0, 20.0}) {
+    const Streams data = of_rate(rate, 80);
+    ClockFollower follower(options);
+    std::size_t pushes = 0, compared = 0;
+    for (std::size_t i = 0; i < data.a.size(); ++i)
+      for (const Side side : {Side::a, Side::b}) {
+        const ClockState before = follower.state();
+        follower.push(side, (side == Side::a ? data.a : data.b)[i]);
+        const auto reached = [&](std::size_t k) {
+          return before.streams[k].newest_us &&
+                 *before.streams[k].newest_us - *before.streams[k].begin_us >= before.next_us;
+        };
+        pushes = reached(0) && reached(1) ? pushes + 1 : 1;
+        if (!before.in_force || before.next_us == follower.state().next_us) continue;
+        TimeOffsetOptions near;
+        near.near = to_seconds(data.a[0].time_us - data.b[0].time_us);
+        const auto window = [&](const Trajectory& path, std::size_t k) {
+          const std::int64_t end_us = *before.streams[k].begin_us + before.next_us;
+          return poses_in(path, end_us - window_us, end_us);
+        };
+        TimeOffsetSearch search(window(data.a, 0), window(data.b, 1), near);
+        while (!search.step(options.clock.work_per_pose)) {
+        }
+        // the offset in force is not quite the given one
+        const auto shares = static_cast<double>(search.steps());
+        EXPECT_GE(static_cast<double>(pushes), 0.9 * shares) << rate << " Hz";
+        EXPECT_LE(static_cast<double>(pushes), 1.1 * shares + 2 * 2 * rate) << rate << " Hz";
+        ++compared;
+      }
+    EXPECT_GE(compared, 1u);
+  }
+}
+
+/// A thousand poses wait for the first estimate.
+TEST(ClockOffset, HeldPosesAreReleasedAFewAtATime) {
+  const Streams data = of_rate(50, 30);
+  ClockFollower follower(PairingOptions{});
+  std::size_t most = 0, released = 0;
+  for (std::size_t i = 0; i < data.a.size(); ++i)
+    for (const Side side : {Side::a, Side::b}) {
+      const std::size_t here = follower.push(side, (side == Side::a ? data.a : data.b)[i]).size();
+      most = std::max(most, here);
+      released += here;
+    }
+  EXPECT_LE(most, 10u);
+  EXPECT_GE(released, data.a.size() + data.b.size() - 2);
+}
+
+/// To the pose: each push releases the same poses as without the interruptions.
+TEST(ClockOffset, ARestartInTheMiddleOfAnEstimateDelaysNothing) {
+  const Streams data = of_rate(10, 50);
+  const PairingOptions options;
+  ClockFollower follower(options), restarted(options);
+  for (std::size_t i = 0; i < data.a.size(); ++i)
+    for (const Side side : {Side::a, Side::b}) {
+      if (i % 7 == 0) restarted = ClockFollower(options, restarted.state());
+      const StampedPose& pose = (side == Side::a ? data.a : data.b)[i];
+      const std::vector<ReleasedPose> expected = follower.push(side, pose),
+                                      found = restarted.push(side, pose);
+      ASSERT_EQ(found.size(), expected.size()) << i;
+      for (std::size_t k = 0; k < found.size(); ++k)
+        ASSERT_EQ(found[k].pose.time_us, expected[k].pose.time_us) << i;
+    }
+  EXPECT_TRUE(follower.seconds());
+  EXPECT_EQ(follower.seconds(), restarted.seconds());
 }
 
 /// Far in the future, or in the past: nothing waits for it, nothing grows.

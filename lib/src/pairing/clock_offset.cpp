@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "egocal/microseconds.hpp"
@@ -11,6 +12,11 @@
 namespace egocal {
 
 namespace {
+
+/// Held poses that are released at each pose: those of the first ten seconds within two. Pairing eight takes
+/// a tenth of a millisecond.
+constexpr std::size_t released_at_once = 8;
+constexpr std::size_t without_limit = std::numeric_limits<std::size_t>::max();
 
 std::int64_t us(double seconds) {
   return std::llround(seconds * 1e6);
@@ -21,14 +27,33 @@ bool good(const TimeOffset& offset, const ClockOptions& options) {
          offset.inliers >= options.least_inliers;
 }
 
+using Window = std::deque<StampedPose>;
+
+/// The first pose of a stream's window after a time since its begin.
+Window::const_iterator first_after(const ClockState::Stream& stream, std::int64_t since_begin_us) {
+  return std::upper_bound(stream.window.begin(), stream.window.end(), *stream.begin_us + since_begin_us,
+                          [](std::int64_t time, const StampedPose& pose) { return time < pose.time_us; });
+}
+
+/// Time since the begin of both at which the streams have gone on by so many poses after `from`.
+std::int64_t time_of(const std::array<ClockState::Stream, 2>& streams, std::int64_t from, std::size_t poses) {
+  Window::const_iterator i = first_after(streams[0], from), j = first_after(streams[1], from);
+  std::int64_t time = from;
+  for (; poses > 0; --poses) {
+    const bool no_a = i == streams[0].window.end(), no_b = j == streams[1].window.end();
+    if (no_a && no_b) break;
+    const std::int64_t a = no_a ? 0 : i->time_us - *streams[0].begin_us,
+                       b = no_b ? 0 : j->time_us - *streams[1].begin_us;
+    const bool from_a = no_b || (!no_a && a <= b);
+    time = from_a ? a : b;
+    from_a ? ++i : ++j;
+  }
+  return time;
+}
+
 /// The poses of a stream in (begin, end] since its begin.
 Trajectory part(const ClockState::Stream& stream, std::int64_t begin, std::int64_t end) {
-  Trajectory result;
-  for (const StampedPose& pose : stream.window) {
-    const std::int64_t since = pose.time_us - *stream.begin_us;
-    if (since > begin && since <= end) result.push_back(pose);
-  }
-  return result;
+  return {first_after(stream, begin), first_after(stream, end)};
 }
 
 }  // namespace
@@ -52,16 +77,54 @@ std::vector<ReleasedPose> ClockFollower::push(Side side, const StampedPose& pose
   ClockState::Stream& stream = state_.streams[side == Side::a ? 0 : 1];
   std::vector<ReleasedPose> released;
   if (!admit(stream, pose)) return released;
-  stream.held.push_back(pose);
+  const auto later = [](const StampedPose& one, const StampedPose& other) {
+    return one.time_us < other.time_us;
+  };
+  stream.held.insert(std::upper_bound(stream.held.begin(), stream.held.end(), pose, later), pose);
   const std::int64_t spacing = us(TimeOffsetOptions{}.least_spacing);
   if (stream.window.empty() || pose.time_us - stream.window.back().time_us >= spacing)
     stream.window.push_back(pose);
-  if (!search_ && both_reached(state_.next_us)) begin_search();
-  if (search_) search_->step(options_.work_per_pose);
-  while (both_reached(boundary_us())) conclude(released);
-  if (state_.in_force) release(released);
+  search_on();
+  while (due()) conclude(time_of(state_.streams, state_.next_us, search_->steps()), released);
+  if (state_.in_force) release(std::max(boundary_us(), common_us()), released_at_once, released);
   forget();
   return released;
+}
+
+std::vector<ReleasedPose> ClockFollower::finish() {
+  std::vector<ReleasedPose> released;
+  while (both_reached(boundary_us())) {
+    if (!search_) begin_search();
+    search_->finish();
+    conclude(common_us(), released);
+  }
+  if (state_.in_force) release(std::max(boundary_us(), common_us()), without_limit, released);
+  return released;
+}
+
+/// One share of the estimate at each pose; all shares that both streams have gone on by, where one was ahead
+/// of the other, or where a copy begins again.
+void ClockFollower::search_on() {
+  if (!both_reached(state_.next_us)) return;
+  if (!search_) begin_search();
+  search_->step(options_.work_per_pose);
+  const std::size_t shares = this->shares();
+  while (!search_->finished() && search_->steps() < shares) search_->step(options_.work_per_pose);
+}
+
+/// Poses by which both streams have gone on since the end of the estimate's streams.
+std::size_t ClockFollower::shares() const {
+  std::ptrdiff_t poses = 0;
+  for (const ClockState::Stream& stream : state_.streams)
+    poses += first_after(stream, common_us()) - first_after(stream, state_.next_us);
+  return static_cast<std::size_t>(poses);
+}
+
+/// Whether the estimate comes into force now.
+bool ClockFollower::due() {
+  if (!both_reached(boundary_us())) return false;
+  if (!search_) search_on();
+  return search_->finished() && search_->steps() <= shares();
 }
 
 /// Whether the pose is near the others of its stream in time. A pose that is not waits for the next one: if
@@ -101,6 +164,13 @@ bool ClockFollower::both_reached(std::int64_t since_begin_us) const {
   });
 }
 
+/// Time since the begin that both streams have reached; both have begun.
+std::int64_t ClockFollower::common_us() const {
+  const auto reached = [](const ClockState::Stream& stream) { return *stream.newest_us - *stream.begin_us; };
+  return std::min(reached(state_.streams[0]), reached(state_.streams[1]));
+}
+
+/// The estimate comes into force here at the earliest.
 std::int64_t ClockFollower::boundary_us() const {
   return state_.next_us + us(options_.delay);
 }
@@ -108,17 +178,21 @@ std::int64_t ClockFollower::boundary_us() const {
 void ClockFollower::begin_search() {
   TimeOffsetOptions options;
   options.max_gap = max_gap_;
-  if (state_.near) options.near = *seconds();
+  if (state_.near) {
+    // at the end of the streams: the newest pose may be any
+    const std::int64_t end_us = *state_.streams[1].begin_us + state_.next_us;
+    options.near = to_seconds(on_clock_of_a(*state_.in_force, end_us) - end_us);
+  }
   // streams with different beginnings overlap only in the longer window
   const std::int64_t begin = state_.next_us - us(state_.in_force ? options_.window : options_.longest);
   search_ = std::make_unique<TimeOffsetSearch>(part(state_.streams[0], begin, state_.next_us),
                                                part(state_.streams[1], begin, state_.next_us), options);
 }
 
-/// The estimate comes into force for all poses after the boundary.
-void ClockFollower::conclude(std::vector<ReleasedPose>& released) {
-  if (state_.in_force) release(released);
-  if (!search_) begin_search();
+/// The finished estimate comes into force for all poses after the boundary, and after the time of the pose
+/// that its last share was worked out at.
+void ClockFollower::conclude(std::int64_t worked_us, std::vector<ReleasedPose>& released) {
+  if (state_.in_force) release(std::max(boundary_us(), worked_us), without_limit, released);
   const std::optional<TimeOffset> offset = search_->finish();
   search_.reset();
   if (offset) state_.newest = offset;
@@ -126,7 +200,7 @@ void ClockFollower::conclude(std::vector<ReleasedPose>& released) {
   const bool first = trusted && !state_.in_force;
   state_.near = trusted;
   if (first) {
-    take_force(*offset);
+    take_force(*offset, worked_us);
     return;
   }
   if (trusted) {
@@ -141,47 +215,49 @@ void ClockFollower::conclude(std::vector<ReleasedPose>& released) {
       ++state_.changes;
     }
   }
-  state_.next_us += us(state_.in_force ? options_.every : options_.first);
+  // the shares of the next one begin with it
+  do {
+    state_.next_us += us(state_.in_force ? options_.every : options_.first);
+  } while (state_.next_us < worked_us);
 }
 
 /// On the first estimate: from now on the times of both streams count from the same instant.
-void ClockFollower::take_force(const TimeOffset& offset) {
+void ClockFollower::take_force(const TimeOffset& offset, std::int64_t worked_us) {
   ClockState::Stream& b = state_.streams[1];
   const std::int64_t begin_us = *state_.streams[0].begin_us - us(offset.seconds);
   const std::int64_t later_us = *b.begin_us - begin_us;
   b.begin_us = begin_us;
-  state_.next_us = std::max(state_.next_us, state_.next_us + later_us) + us(options_.every);
+  const std::int64_t concluded_us = std::max(state_.next_us, worked_us);
+  state_.next_us = std::max(concluded_us, concluded_us + later_us) + us(options_.every);
   state_.in_force = offset;
   ++state_.changes;
 }
 
-/// Releases the held poses up to the boundary, in the order of time on the clock of a.
-void ClockFollower::release(std::vector<ReleasedPose>& released) {
-  const std::size_t first = released.size();
-  for (const Side side : {Side::a, Side::b}) {
-    ClockState::Stream& stream = state_.streams[side == Side::a ? 0 : 1];
-    std::deque<StampedPose> later;
-    for (StampedPose pose : stream.held) {
-      if (pose.time_us - *stream.begin_us > boundary_us()) {
-        later.push_back(pose);
-        continue;
-      }
-      if (side == Side::b) pose.time_us = on_clock_of_a(*state_.in_force, pose.time_us);
-      released.push_back({side, pose, state_.changes});
-    }
-    stream.held = std::move(later);
+/// Releases held poses up to a time since the begin, in the order of time on the clock of a.
+void ClockFollower::release(std::int64_t until_us, std::size_t most, std::vector<ReleasedPose>& released) {
+  const auto next = [&](Side side) -> std::optional<StampedPose> {
+    const ClockState::Stream& stream = state_.streams[side == Side::a ? 0 : 1];
+    if (stream.held.empty() || stream.held.front().time_us - *stream.begin_us > until_us) return std::nullopt;
+    StampedPose pose = stream.held.front();
+    if (side == Side::b) pose.time_us = on_clock_of_a(*state_.in_force, pose.time_us);
+    return pose;
+  };
+  for (std::size_t i = 0; i < most; ++i) {
+    const std::optional<StampedPose> a = next(Side::a), b = next(Side::b);
+    if (!a && !b) return;
+    const Side side = a && (!b || a->time_us <= b->time_us) ? Side::a : Side::b;
+    released.push_back({side, side == Side::a ? *a : *b, state_.changes});
+    state_.streams[side == Side::a ? 0 : 1].held.pop_front();
   }
-  std::stable_sort(
-      released.begin() + static_cast<std::ptrdiff_t>(first), released.end(),
-      [](const ReleasedPose& x, const ReleasedPose& y) { return x.pose.time_us < y.pose.time_us; });
 }
 
 /// Keeps memory bounded, by time and by number.
 void ClockFollower::forget() {
-  const std::int64_t longest_us = us(options_.longest);
+  const std::int64_t longest_us = us(options_.longest),
+                     held_us = longest_us + us(state_.in_force ? options_.every : 0);  // while being released
   for (ClockState::Stream& stream : state_.streams) {
     while (!stream.held.empty() && (stream.held.size() > options_.most_held ||
-                                    *stream.newest_us - stream.held.front().time_us > longest_us)) {
+                                    *stream.newest_us - stream.held.front().time_us > held_us)) {
       stream.held.pop_front();
       ++state_.given_up;
     }

@@ -56,18 +56,14 @@ std::vector<MotionPair> MotionPairing::push(Side side, const StampedPose& given)
   const std::uint64_t given_up = clock_.state().given_up;
   const std::vector<ReleasedPose> released = clock_.push(side, pose);
   rejections_.add(Rejection::no_partner, clock_.state().given_up - given_up);
-  for (const ReleasedPose& one : released) {
-    // no motion spans a change of the clock
-    if (one.segment != segment_) take(synchroniser_.begin_chain(), pairs);
-    segment_ = one.segment;
-    take(synchroniser_.push(one.side, one.pose), pairs);
-  }
+  take(released, pairs);
   if (settles_) settle();
   return pairs;
 }
 
 std::vector<MotionPair> MotionPairing::finish() {
   std::vector<MotionPair> pairs;
+  if (options_.track_time_offset) take(clock_.finish(), pairs);
   take(synchroniser_.finish(), pairs);
   screening_.finish();
   accumulator_.add_to_sums(accumulator_.take_deferred());
@@ -84,6 +80,15 @@ void MotionPairing::settle() {
 const Accumulator& MotionPairing::current() const {
   if (std::exchange(early_is_old_, false)) early_ = accumulator_.with_early_choice();
   return early_ ? *early_ : accumulator_;
+}
+
+void MotionPairing::take(const std::vector<ReleasedPose>& released, std::vector<MotionPair>& pairs) {
+  for (const ReleasedPose& one : released) {
+    // no motion spans a change of the clock
+    if (one.segment != segment_) take(synchroniser_.begin_chain(), pairs);
+    segment_ = one.segment;
+    take(synchroniser_.push(one.side, one.pose), pairs);
+  }
 }
 
 void MotionPairing::take(const std::vector<Instant>& instants, std::vector<MotionPair>& pairs) {

@@ -23,30 +23,44 @@ using namespace detail;
 
 struct TimeOffsetSearch::Impl {
   struct Stream {
-    Trajectory poses;
+    Trajectory given, poses;
+    std::int64_t period_us = 0;  ///< median
     std::vector<Detour> detours;
+    Detour typical;
+    std::size_t kept = 0;  ///< of the poses looked at for glitches, at the front
     std::vector<StepDifference> steps;
     Series angles;
   };
 
   Impl(const Trajectory& given_a, const Trajectory& given_b, const TimeOffsetOptions& given)
       : options(given) {
-    a.poses = thinned(given_a, static_cast<std::int64_t>(options.least_spacing * second_us));
-    b.poses = thinned(given_b, static_cast<std::int64_t>(options.least_spacing * second_us));
-    schedule.add(1, [this] { prepare(); });
+    a.given = given_a;
+    b.given = given_b;
+    const auto least_us = static_cast<std::int64_t>(options.least_spacing * second_us);
+    for (Stream* stream : {&a, &b})
+      schedule.add_range(stream->given.size(), [stream, least_us](std::size_t begin, std::size_t end) {
+        if (begin == 0) stream->poses.reserve(stream->given.size());
+        append_thinned(stream->given, begin, end, least_us, stream->poses);
+      });
+    for (Stream* stream : {&a, &b})
+      schedule.add(stream->given.size() / 16, [this, stream] {
+        stream->given = {};
+        if (long_enough()) stream->period_us = median_period_us(stream->poses);
+      });
+    schedule.add((a.given.size() + b.given.size()) / 16, [this] { prepare(); });
   }
 
   bool long_enough() const { return a.poses.size() >= 10 && b.poses.size() >= 10; }
 
   void prepare() {
     if (!long_enough()) return;
-    const std::int64_t period_us = std::max(median_period_us(a.poses), median_period_us(b.poses));
+    const std::int64_t period_us = std::max(a.period_us, b.period_us);
     const auto period = static_cast<double>(period_us);
     step_us = static_cast<std::int64_t>(std::max(
         std::clamp(period, options.finest_grid * second_us, options.coarsest_grid * second_us), period / 4));
     max_gap_us = static_cast<std::int64_t>(std::clamp(options.max_gap * second_us, 3 * period, 20 * period));
     for (Stream* stream : {&a, &b})
-      stream->poses = dense_part(stream->poses, max_gap_us, options.most_sparse);
+      stream->poses = dense_part(std::move(stream->poses), max_gap_us, options.most_sparse);
     if (!long_enough()) return;
     // several rounds, as one round finds only the furthest one of neighbouring glitches
     for (int round = 0; round < options.glitch_rounds; ++round)
@@ -60,8 +74,19 @@ struct TimeOffsetSearch::Impl {
     schedule.add_range(stream.poses.size(), [&stream](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) stream.detours[i] = detour(stream.poses, i);
     });
-    schedule.add(stream.poses.size() / 4,
-                 [this, &stream] { stream.poses = without_glitches(stream.poses, stream.detours, options); });
+    if (stream.poses.size() < 3) return;
+    schedule.add(stream.poses.size() / 16,
+                 [&stream] { stream.typical.angle = median_of(stream.detours, &Detour::angle); });
+    schedule.add(stream.poses.size() / 16, [&stream] {
+      stream.typical.length = median_of(stream.detours, &Detour::length);
+      stream.kept = 0;
+    });
+    schedule.add_range(stream.poses.size(), [this, &stream](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        if (!is_glitch(stream.detours, i, stream.typical, options))
+          stream.poses[stream.kept++] = stream.poses[i];
+    });
+    schedule.add(1, [&stream] { stream.poses.resize(stream.kept); });
   }
 
   void remove_lasting_jumps(Stream& stream) {
@@ -258,6 +283,8 @@ struct TimeOffsetSearch::Impl {
 
   TimeOffsetOptions options;
   Schedule schedule;
+  std::size_t steps = 0;
+  bool finished = false;
   Stream a, b;
   std::int64_t step_us = 0, max_gap_us = 0;
   std::optional<LagSearch> lags;
@@ -278,7 +305,17 @@ TimeOffsetSearch::TimeOffsetSearch(TimeOffsetSearch&&) noexcept = default;
 TimeOffsetSearch& TimeOffsetSearch::operator=(TimeOffsetSearch&&) noexcept = default;
 
 bool TimeOffsetSearch::step(std::size_t work) {
-  return impl_->schedule.run(work);
+  if (finished()) return true;
+  ++impl_->steps;
+  return impl_->finished = impl_->schedule.run(work);
+}
+
+std::size_t TimeOffsetSearch::steps() const {
+  return impl_->steps;
+}
+
+bool TimeOffsetSearch::finished() const {
+  return impl_->finished;
 }
 
 std::optional<TimeOffset> TimeOffsetSearch::finish() {

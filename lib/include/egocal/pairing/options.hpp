@@ -18,7 +18,7 @@ namespace egocal {
 struct ClockOptions {
   double first = 10;     ///< length of the first estimate's streams, and of what each next one adds [s]
   double every = 30;     ///< between estimates once one is in force [s]: quartz changes over minutes
-  double delay = 2;      ///< from the end of an estimate's streams until it comes into force [s]
+  double delay = 2;      ///< from the end of an estimate's streams until it comes into force, at least [s]
   double window = 60;    ///< newest part of the streams that an estimate looks at once one is in force [s]
   double longest = 180;  ///< poses are held for at most this long, and until the first estimate looked at [s]
   std::size_t most_held = 200'000;  ///< poses of one stream: 180 s at 1 kHz
@@ -27,7 +27,7 @@ struct ClockOptions {
   double largest_stddev = 0.005;  ///< [s]: at 1 rad/s an error of 0.3 deg
   /// Another offset comes into force where it differs by both [s, standard deviations].
   double least_change = 0.005, change_sigmas = 4;
-  /// Share of the estimate that is worked out at each pose, in poses looked at: about 0.2 ms.
+  /// Share of the estimate that is worked out at each pose, in poses looked at: 0.2 to 0.7 ms.
   std::size_t work_per_pose = 512;
   double phase = 0;  ///< in [0, 1): several pairs of one rig estimate at different times
 };

@@ -19,7 +19,7 @@ namespace egocal {
 struct ClockState {
   struct Stream {
     std::deque<StampedPose> window;  ///< thinned, for the estimates; with the stamps they came with
-    std::deque<StampedPose> held;    ///< not released yet, in the order of arrival
+    std::deque<StampedPose> held;    ///< not released yet, in the order of their stamps
     std::optional<std::int64_t> begin_us, newest_us;  ///< stamps
     std::optional<StampedPose> stray;  ///< far from the others: the next pose shows whether time jumped
   };
@@ -41,9 +41,12 @@ struct ReleasedPose {
 
 /// Follows the offset of clock b from a, and its drift. Poses are held until an estimate is good enough; from
 /// then on they pass at once, b's on the clock of a. Estimated again every half minute over the newest
-/// minute; each estimate is worked out over the poses of the next two seconds and comes into force at a fixed
-/// time, so that no pose waits for more than a fraction of a millisecond of work. The result depends on the
-/// stamps of both streams, not on how they interleave nor on how fast the machine is.
+/// minute. Each estimate is worked out over the poses that follow, a bounded share at each, so that none
+/// waits for more than a fraction of a millisecond of work. It comes into force once both streams have gone
+/// on by as many poses as it has shares, and by `delay` at least: after 2 s at 100 Hz, 5 s at 10 Hz. The
+/// poses held until the first one are then released a few at a time. The result depends on the stamps of both
+/// streams, not on how they interleave nor on how fast the machine is; until the held poses are released,
+/// only after finish().
 class ClockFollower {
  public:
   /// Uses max_gap and the options of its own stage.
@@ -56,6 +59,8 @@ class ClockFollower {
 
   /// Takes the next pose of one stream. Returns the poses that may be used now, in the order of time.
   std::vector<ReleasedPose> push(Side side, const StampedPose& pose);
+  /// No more poses will come. Works out the estimate that is due, and returns all poses that may be used.
+  std::vector<ReleasedPose> finish();
   /// What is added to the stamps of b now [s]; empty while it is looked for.
   std::optional<double> seconds() const;
   const ClockState& state() const { return state_; }
@@ -64,11 +69,15 @@ class ClockFollower {
   bool admit(ClockState::Stream& stream, const StampedPose& pose);
   void restart();
   void begin_search();
+  void search_on();
+  std::size_t shares() const;
+  bool due();
   bool both_reached(std::int64_t since_begin_us) const;
-  void conclude(std::vector<ReleasedPose>& released);
-  void take_force(const TimeOffset& offset);
-  void release(std::vector<ReleasedPose>& released);
+  void conclude(std::int64_t worked_us, std::vector<ReleasedPose>& released);
+  void take_force(const TimeOffset& offset, std::int64_t worked_us);
+  void release(std::int64_t until_us, std::size_t most, std::vector<ReleasedPose>& released);
   void forget();
+  std::int64_t common_us() const;
   std::int64_t boundary_us() const;
 
   ClockOptions options_;

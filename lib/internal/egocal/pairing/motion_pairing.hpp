@@ -78,6 +78,7 @@ class MotionPairing {
   const std::optional<TimeOffset>& estimated_time_offset() const { return clock_.state().newest; }
 
  private:
+  void take(const std::vector<ReleasedPose>& released, std::vector<MotionPair>& pairs);
   void take(const std::vector<Instant>& instants, std::vector<MotionPair>& pairs);
   void settle();
   const Accumulator& current() const;

@@ -28,6 +28,9 @@ class TimeOffsetSearch {
 
   /// Does the next pieces of work, of about `work` poses together. Returns whether the search is finished.
   bool step(std::size_t work);
+  /// Calls of step() that found something to do.
+  std::size_t steps() const;
+  bool finished() const;
   /// Does what is left. Empty where the streams are too short, never turn or do not match.
   std::optional<TimeOffset> finish();
 

@@ -76,7 +76,15 @@ void OffsetFits::add(const ClockLine& clock, const DualQuaternion& start) {
     schedule_.add_range(
         count_, [this, clock](std::size_t begin, std::size_t end) { sample(clock, begin, end); },
         comparison_cost);
-    schedule_.add(count_, [this, start] { fit(start); });
+    schedule_.add(1, [this, start] {
+      left_.assign(count_, {});
+      extrinsic_ = start;
+    });
+    for (int round = 0; round < tuning_.rounds; ++round) schedule_.add(count_, [this] { fit(); });
+    schedule_.add(count_ / 4, [this] {
+      set_left();
+      fits_.push_back({std::move(left_), to_pose(extrinsic_).translation.squaredNorm()});
+    });
   });
 }
 
@@ -116,33 +124,38 @@ void OffsetFits::sample(const ClockLine& clock, std::size_t begin, std::size_t e
   }
 }
 
-/// Fits the extrinsic by weighted global solutions of (18), and sets its residuals.
-void OffsetFits::fit(DualQuaternion extrinsic) {
-  std::vector<Left> left(count_);
-  const Balance balance{1, options_.translation_weight};
-  for (int round = 0;; ++round) {
-    std::vector<double> rotations, translations;
-    for (std::size_t k = 0; k < count_; ++k) {
-      if (!sampled_[k].known) continue;
-      const MotionPair& pair = sampled_[k].motion;
-      const Vector8d d = (pair.a * extrinsic).vec() - (extrinsic * pair.b).vec();
-      left[k] = {d.head<4>().squaredNorm(), d.tail<4>().squaredNorm(), true};
-      rotations.push_back(left[k].rotation);
-      translations.push_back(left[k].translation);
-    }
-    if (round == tuning_.rounds || rotations.empty()) break;
-    const double rotation = median(std::move(rotations)) + floor_.rotation,
-                 translation = median(std::move(translations)) + floor_.translation;
-    Statistics statistics;
-    for (std::size_t k = 0; k < count_; ++k) {
-      if (!sampled_[k].known) continue;
-      const double root =
-          1 / (1 + (left[k].rotation / rotation + left[k].translation / translation) / options_.outlier);
-      statistics.add(sampled_[k].motion.a, sampled_[k].motion.b, root * root);
-    }
-    extrinsic = solve_dual(cost_matrix(statistics, balance)).q;
+/// What the extrinsic leaves of each motion (18).
+void OffsetFits::set_left() {
+  for (std::size_t k = 0; k < count_; ++k) {
+    if (!sampled_[k].known) continue;
+    const MotionPair& pair = sampled_[k].motion;
+    const Vector8d d = (pair.a * extrinsic_).vec() - (extrinsic_ * pair.b).vec();
+    left_[k] = {d.head<4>().squaredNorm(), d.tail<4>().squaredNorm(), true};
   }
-  fits_.push_back({std::move(left), to_pose(extrinsic).translation.squaredNorm()});
+}
+
+/// One weighted global solution of (18), with the weights of the extrinsic before.
+void OffsetFits::fit() {
+  set_left();
+  std::vector<double> rotations, translations;
+  rotations.reserve(count_);
+  translations.reserve(count_);
+  for (std::size_t k = 0; k < count_; ++k) {
+    if (!sampled_[k].known) continue;
+    rotations.push_back(left_[k].rotation);
+    translations.push_back(left_[k].translation);
+  }
+  if (rotations.empty()) return;
+  const double rotation = median(std::move(rotations)) + floor_.rotation,
+               translation = median(std::move(translations)) + floor_.translation;
+  Statistics statistics;
+  for (std::size_t k = 0; k < count_; ++k) {
+    if (!sampled_[k].known) continue;
+    const double root =
+        1 / (1 + (left_[k].rotation / rotation + left_[k].translation / translation) / options_.outlier);
+    statistics.add(sampled_[k].motion.a, sampled_[k].motion.b, root * root);
+  }
+  extrinsic_ = solve_dual(cost_matrix(statistics, Balance{1, options_.translation_weight})).q;
 }
 
 std::optional<OffsetFits::Comparison> OffsetFits::compare(std::size_t first, std::size_t second) const {

@@ -63,7 +63,8 @@ class OffsetFits {
   double time_us(std::size_t k) const;
   void find_floor(const Trajectory& poses);
   void sample(const ClockLine& clock, std::size_t begin, std::size_t end);
-  void fit(DualQuaternion extrinsic);
+  void fit();
+  void set_left();
 
   const Trajectory &a_, &b_;
   TimeOffsetOptions options_;
@@ -75,6 +76,8 @@ class OffsetFits {
   std::size_t count_ = 0;                  ///< of the motions
   Left floor_;                             ///< squares that say nothing: of rounding and of interpolation
   std::vector<Sampled> sampled_;           ///< under the newest clock
+  DualQuaternion extrinsic_;               ///< and what is found under it
+  std::vector<Left> left_;                 ///< of the motions by this extrinsic
   std::vector<Fit> fits_;                  ///< by clock
 };
 

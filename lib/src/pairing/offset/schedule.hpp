@@ -29,15 +29,15 @@ class Schedule {
     }
   }
 
-  /// Does at least one piece, and more until `cost` is spent. True: nothing is left.
+  /// Does at least one piece, and more as long as they cost no more than `cost` together. True: nothing is
+  /// left.
   bool run(std::size_t cost) {
     std::size_t spent = 0;
-    while (take_added()) {
+    while (take_added() && (spent == 0 || spent + pieces_.front().cost <= cost)) {
       const Piece piece = std::move(pieces_.front());
       pieces_.pop_front();
       piece.work();
-      spent += piece.cost;
-      if (spent >= cost) break;
+      spent += std::max<std::size_t>(1, piece.cost);
     }
     return !take_added();
   }

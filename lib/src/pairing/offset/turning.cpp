@@ -47,10 +47,10 @@ std::int64_t median_period_us(const Trajectory& trajectory) {
   return std::max<std::int64_t>(1, median(std::move(periods)));
 }
 
-Trajectory thinned(const Trajectory& trajectory, std::int64_t least_us) {
-  Trajectory result;
-  result.reserve(trajectory.size());
-  for (const StampedPose& pose : trajectory) {
+void append_thinned(const Trajectory& trajectory, std::size_t begin, std::size_t end, std::int64_t least_us,
+                    Trajectory& result) {
+  for (std::size_t i = begin; i < end; ++i) {
+    const StampedPose& pose = trajectory[i];
     if (!plausible_relative_time(pose.time_us) || !pose.pose.vec().allFinite() ||
         !plausible_norm(pose.pose.real.norm()))
       continue;
@@ -59,10 +59,16 @@ Trajectory thinned(const Trajectory& trajectory, std::int64_t least_us) {
       result.back().pose = normalized(pose.pose);
     }
   }
+}
+
+Trajectory thinned(const Trajectory& trajectory, std::int64_t least_us) {
+  Trajectory result;
+  result.reserve(trajectory.size());
+  append_thinned(trajectory, 0, trajectory.size(), least_us, result);
   return result;
 }
 
-Trajectory dense_part(const Trajectory& trajectory, std::int64_t max_gap_us, std::int64_t most_sparse) {
+Trajectory dense_part(Trajectory trajectory, std::int64_t max_gap_us, std::int64_t most_sparse) {
   std::int64_t known_us = 0;
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     const std::int64_t gap = trajectory[i].time_us - trajectory[i - 1].time_us;
@@ -76,8 +82,9 @@ Trajectory dense_part(const Trajectory& trajectory, std::int64_t max_gap_us, std
       best_end = end;
     }
   }
-  return {trajectory.begin() + static_cast<std::ptrdiff_t>(best_begin),
-          trajectory.begin() + static_cast<std::ptrdiff_t>(best_end)};
+  trajectory.erase(trajectory.begin() + static_cast<std::ptrdiff_t>(best_end), trajectory.end());
+  trajectory.erase(trajectory.begin(), trajectory.begin() + static_cast<std::ptrdiff_t>(best_begin));
+  return trajectory;
 }
 
 Detour detour(const Trajectory& trajectory, std::size_t i) {
@@ -95,16 +102,16 @@ Detour detour(const Trajectory& trajectory, std::size_t i) {
   return result;
 }
 
-Trajectory without_glitches(const Trajectory& trajectory, const std::vector<Detour>& detours,
-                            const TimeOffsetOptions& options) {
-  std::vector<double> angles, lengths;
-  for (const Detour& one : detours) {
-    angles.push_back(one.angle);
-    lengths.push_back(one.length);
-  }
-  if (angles.size() < 3) return trajectory;
-  const double angle = options.outlier * median(std::move(angles)),
-               length = options.outlier * median(std::move(lengths));
+double median_of(const std::vector<Detour>& detours, double Detour::*member) {
+  std::vector<double> values;
+  values.reserve(detours.size());
+  for (const Detour& one : detours) values.push_back(one.*member);
+  return median(std::move(values));
+}
+
+bool is_glitch(const std::vector<Detour>& detours, std::size_t i, const Detour& typical,
+               const TimeOffsetOptions& options) {
+  const double angle = options.outlier * typical.angle, length = options.outlier * typical.length;
   // how far off a pose is, by angle or length, whichever is larger; 1 is the limit
   const auto excess = [&](const Detour& one) {
     const double by_angle =
@@ -113,15 +120,10 @@ Trajectory without_glitches(const Trajectory& trajectory, const std::vector<Deto
         one.length / std::max({length, options.least_detour * one.past_length, options.length_floor});
     return std::max(by_angle, by_length);
   };
-  Trajectory result;
-  result.reserve(trajectory.size());
-  for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    const double here = excess(detours[i]);
-    const bool furthest = (i == 0 || here >= excess(detours[i - 1])) &&
-                          (i + 1 == trajectory.size() || here >= excess(detours[i + 1]));
-    if (!(here > 1 && furthest)) result.push_back(trajectory[i]);
-  }
-  return result;
+  const double here = excess(detours[i]);
+  const bool furthest = (i == 0 || here >= excess(detours[i - 1])) &&
+                        (i + 1 == detours.size() || here >= excess(detours[i + 1]));
+  return here > 1 && furthest;
 }
 
 std::size_t grid_size(const Trajectory& trajectory, std::int64_t step_us) {

@@ -18,10 +18,13 @@ std::int64_t median_period_us(const Trajectory& trajectory);
 /// The trajectory with unit poses, without invalid poses and without those less than `least_us` (positive)
 /// after the one before.
 Trajectory thinned(const Trajectory& trajectory, std::int64_t least_us);
+/// The same in pieces: appends what the poses [begin, end) add to the result of those before.
+void append_thinned(const Trajectory& trajectory, std::size_t begin, std::size_t end, std::int64_t least_us,
+                    Trajectory& result);
 
 /// The part with most poses among those that last at most most_sparse times the known time, so that a stray
 /// stamp far away does not lengthen the grid. The known time is that between poses at most max_gap_us apart.
-Trajectory dense_part(const Trajectory& trajectory, std::int64_t max_gap_us, std::int64_t most_sparse);
+Trajectory dense_part(Trajectory trajectory, std::int64_t max_gap_us, std::int64_t most_sparse);
 
 /// How much longer the way over a pose is than the way past it.
 struct Detour {
@@ -31,10 +34,12 @@ struct Detour {
 /// Detour of pose i of the trajectory; zero for the first and the last one.
 Detour detour(const Trajectory& trajectory, std::size_t i);
 
-/// The trajectory without single poses far from the path of their neighbours: options.outlier times farther
-/// than is typical, and more than options.least_detour of the motion past them.
-Trajectory without_glitches(const Trajectory& trajectory, const std::vector<Detour>& detours,
-                            const TimeOffsetOptions& options);
+/// Whether pose i is single and far from the path of its neighbours: options.outlier times farther than is
+/// typical, and more than options.least_detour of the motion past it. typical: of the detours of all poses,
+/// three at least.
+bool is_glitch(const std::vector<Detour>& detours, std::size_t i, const Detour& typical,
+               const TimeOffsetOptions& options);
+double median_of(const std::vector<Detour>& detours, double Detour::*member);
 
 /// Number of points of a grid over the trajectory.
 std::size_t grid_size(const Trajectory& trajectory, std::int64_t step_us);
