@@ -20,9 +20,11 @@
 #include "egocal/error.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/io/whole_file.hpp"
+#include "egocal/samples/calibrate_samples.hpp"
 #include "markdown_tables.hpp"
 #include "study_drives.hpp"
 #include "support/mistakes.hpp"
+#include "support/mistakes_of_samples.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace {
@@ -137,9 +139,10 @@ std::vector<const StudyDrive*> chosen(const std::vector<StudyDrive>& drives, std
 
 struct Study {
   std::vector<StudyDrive> simulated, real;
-  std::string only;
-  double rate_b = 0;    ///< see simulated_study_drive()
-  std::size_t few = 0;  ///< simulated drives of each mistake, and one real one; 0: all
+  std::vector<StudyDrive> of_speeds;  ///< as simulated, at speeds that vary
+  std::string only, from;             ///< this mistake alone; this one and those after it; empty: all
+  double rate_b = 0;                  ///< see simulated_study_drive()
+  std::size_t few = 0;                ///< simulated drives of each mistake, and one real one; 0: all
   bool verbose = false;
 };
 
@@ -149,11 +152,14 @@ Table mistakes(const Study& study, Totals& totals) {
       {{"mistake", "answers", "off by more than 1 deg or 60 cm", "of these where observable: cause named",
         "good", "incomplete", "doubtful", "contradictory"}}};
   const std::vector<Mistake> all = testing::mistakes();
+  bool begun = study.from.empty();
   for (std::size_t m = 0; m < all.size(); ++m) {
     const Mistake& mistake = all[m];
-    if (mistake.name == "none" || (!study.only.empty() && mistake.name != study.only)) continue;
+    begun = begun || mistake.name == study.from;
+    if (!begun || mistake.name == "none" || (!study.only.empty() && mistake.name != study.only)) continue;
     Totals row;
-    for (const StudyDrive* drive : chosen(study.simulated, m, study.few))
+    for (const StudyDrive* drive :
+         chosen(mistake.of_speeds ? study.of_speeds : study.simulated, m, study.few))
       run(*drive, mistake, row, study.verbose);
     for (std::size_t i = 0; i < study.real.size(); ++i)
       if (study.few == 0 || i == m % study.real.size()) run(study.real[i], mistake, row, study.verbose);
@@ -182,12 +188,50 @@ Table clean(const Study& study, std::size_t first, std::size_t series, int poses
   return table;
 }
 
+/// Sets of still poses: a camera on the hand of an arm, noise of 0.2 degrees and 2 mm.
+Table samples(int sets, Totals& totals) {
+  constexpr std::size_t size = 20;
+  constexpr double off_by = 0.02;  // an arm wants less than a vehicle [m]
+  Table table{"samples",
+              {{"mistake", "sets", "off by more than 1 deg or 2 cm", "of these: cause named", "good",
+                "incomplete", "doubtful", "contradictory"}}};
+  for (const testing::SampleMistake& mistake : testing::mistakes_of_samples()) {
+    Totals row;
+    for (int seed = 1; seed <= sets; ++seed) {
+      testing::Random random(static_cast<std::uint64_t>(seed));
+      testing::ArmSamples what;
+      what.samples = size;
+      what.rotation_noise = 0.2;
+      what.position_noise = 2;
+      testing::SimulatedSamples drawn = testing::simulate_arm(what, random);
+      mistake.make(drawn.samples);
+      const Calibration found = calibrate_samples(drawn.samples).calibration;
+      const ExtrinsicError error = extrinsic_error(drawn.X, to_dual_quaternion(found.T_a_b));
+      const bool off = error.rotation > std::numbers::pi / 180 || error.translation > off_by;
+      const bool named = std::any_of(found.findings.begin(), found.findings.end(),
+                                     [&](const Finding& one) { return one.code == mistake.code; });
+      ++row.runs;
+      ++row.verdicts[static_cast<std::size_t>(found.verdict)];
+      row.off += off;
+      row.silent += off && found.verdict == Verdict::good && !named;
+      row.traced += off && !mistake.code.empty();
+      row.named += off && named;
+      if (mistake.name == "none") ++row.clean, row.alarms += found.verdict >= Verdict::doubtful;
+    }
+    table.rows.push_back({mistake.name, count(row.runs), count(row.off),
+                          mistake.code.empty() ? "" : count(row.named) + " of " + count(row.traced)});
+    for (const int n : row.verdicts) table.rows.back().push_back(count(n));
+    totals.add(row);
+  }
+  return table;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   cli::Program program("mistake_study", "verdicts on mistakes that users make, and on clean drives", "");
   Study study;
-  int seeds = 1, poses = 1001, first = 0, series = 0, few = 0;
+  int seeds = 1, poses = 1001, first = 0, series = 0, few = 0, sets = 0;
   bool no_real = false;
   bool few_real = false, only_clean = false;
   std::string write, check;
@@ -197,9 +241,11 @@ int main(int argc, char** argv) {
   std::vector<std::string> names;
   for (const Mistake& mistake : testing::mistakes()) names.push_back(mistake.name);
   program.add_option("--mistake", study.only, "this one alone").check(cli::Check::one_of(names));
+  program.add_option("--from", study.from, "this one and those after it").check(cli::Check::one_of(names));
   program.add_option("--few", few, "simulated drives and one real one for each mistake; 0: all");
   program.add_option("--series", series, "clean simulated drives besides");
   program.add_option("--first", first, "number of the series' first drive, to run it in parts");
+  program.add_option("--sets", sets, "of still poses with each mistake that is made with them; 0: none");
   program.add_option("--write", write, "a page: put the tables in their places");
   program.add_option("--check", check, "a page: exit 1 where its tables differ");
   program.add_flag("--small", few_real, "two real drives");
@@ -208,14 +254,16 @@ int main(int argc, char** argv) {
   program.add_flag("--verbose", study.verbose, "every run");
   program.callback([&] {
     study.simulated = bench::simulated_study_drives(seeds, poses, study.rate_b);
+    study.of_speeds = bench::study_drives_of_speeds(seeds, poses, study.rate_b);
     if (!no_real) study.real = bench::real_study_drives(few_real);
     study.few = static_cast<std::size_t>(std::max(0, few));
     Totals totals;
     std::vector<Table> tables;
-    if (study.only.empty())
+    if (study.only.empty() && study.from.empty())
       tables.push_back(clean(study, static_cast<std::size_t>(std::max(0, first)),
                              static_cast<std::size_t>(std::max(0, series)), poses, totals));
-    if (!only_clean) tables.push_back(mistakes(study, totals));
+    if (!only_clean && (seeds > 0 || !no_real)) tables.push_back(mistakes(study, totals));
+    if (sets > 0) tables.push_back(samples(sets, totals));
     std::string page = write.empty() ? "" : bench::read_page(write);
     bool same = true;
     for (const Table& table : tables) {

@@ -47,12 +47,25 @@ void add_tampere(std::vector<StudyDrive>& drives) {
   }
 }
 
+std::vector<StudyDrive> drives_of(const std::vector<double>& levels, int seeds, int poses, double rate_b,
+                                  double speed_variation) {
+  std::vector<StudyDrive> drives;
+  for (int seed = 1; seed <= seeds; ++seed)
+    for (const Terrain terrain : terrains)
+      for (const double level : levels)
+        for (const Noise noise : noises)
+          drives.push_back(simulated_study_drive(terrain, level, noise, poses,
+                                                 static_cast<std::uint64_t>(seed), rate_b, speed_variation));
+  return drives;
+}
+
 }  // namespace
 
 StudyDrive simulated_study_drive(Terrain terrain, double level, Noise noise, int poses, std::uint64_t seed,
-                                 double rate_b) {
+                                 double rate_b, double speed_variation) {
   SimulationOptions options;
   options.terrain = terrain;
+  options.speed_variation = speed_variation;
   options.relative_noise = level;
   options.random_walk = noise == Noise::wandering;
   options.heavy_tails = noise == Noise::heavy_tailed;
@@ -73,14 +86,12 @@ StudyDrive simulated_study_drive(Terrain terrain, double level, Noise noise, int
 }
 
 std::vector<StudyDrive> simulated_study_drives(int seeds, int poses, double rate_b) {
-  std::vector<StudyDrive> drives;
-  for (int seed = 1; seed <= seeds; ++seed)
-    for (const Terrain terrain : terrains)
-      for (const double level : {0.001, 0.01, 0.1})
-        for (const Noise noise : noises)
-          drives.push_back(
-              simulated_study_drive(terrain, level, noise, poses, static_cast<std::uint64_t>(seed), rate_b));
-  return drives;
+  return drives_of({0.001, 0.01, 0.1}, seeds, poses, rate_b, 0);
+}
+
+std::vector<StudyDrive> study_drives_of_speeds(int seeds, int poses, double rate_b) {
+  constexpr double speeds = 1.5;  // see the declaration
+  return drives_of({0.001, 0.01}, seeds, poses, rate_b, speeds);
 }
 
 StudyDrive drive_of_series(std::size_t i, int poses, double rate_b) {

@@ -24,12 +24,17 @@ constexpr Terrain terrains[] = {Terrain::flat, Terrain::rough, Terrain::free};
 constexpr std::size_t drives_per_seed = 36;
 
 /// level: noise of each motion as a part of the mean one. Outliers: a twentieth of the poses of b. rate_b:
-/// own rate of b [Hz], with stamps that are none of a's; 0: a's stamps.
+/// own rate of b [Hz], with stamps that are none of a's; 0: a's stamps. speed_variation: as of
+/// SimulationOptions.
 StudyDrive simulated_study_drive(Terrain terrain, double level, Noise noise, int poses, std::uint64_t seed,
-                                 double rate_b = 0);
+                                 double rate_b = 0, double speed_variation = 0);
 
 /// Every terrain, level (0.1, 1, 10 %) and kind of noise, in this order, for each seed from 1.
 std::vector<StudyDrive> simulated_study_drives(int seeds, int poses, double rate_b = 0);
+
+/// The same at speeds that vary: they stop, and go at thrice the speed, within a minute. Without the level of
+/// 10 %, which hides what one row does.
+std::vector<StudyDrive> study_drives_of_speeds(int seeds, int poses, double rate_b = 0);
 
 /// Level evenly in the logarithm from 0.1 to 10 %, terrain and kind of noise alternately: drive i of a series
 /// without end.

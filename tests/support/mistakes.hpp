@@ -7,23 +7,20 @@
 #include <functional>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "egocal/geometry/pose.hpp"
 #include "egocal/pairing/trajectory.hpp"
+#include "mistake.hpp"
 #include "mistakes_of_clocks.hpp"
 #include "mistakes_of_frames.hpp"
+#include "mistakes_of_rows.hpp"
 #include "mistakes_of_streams.hpp"
 #include "mistakes_of_units.hpp"
 #include "simulated_drive.hpp"
 
 namespace egocal::testing {
-
-struct Mistake {
-  std::string name;
-  std::string code;  ///< of the finding that names it; empty: none has to
-  std::function<void(Streams&)> make;
-};
 
 inline std::vector<Mistake> mistakes() {
   Eigen::Matrix3d mirror = Eigen::Matrix3d::Identity(), exchange, cycle;
@@ -41,7 +38,7 @@ inline std::vector<Mistake> mistakes() {
   const Pose metre_aside{Rotation::Identity(), {0.6, 0.8, 0}};
   const Pose turned{rotation_exp({0, 0, 2 * std::numbers::pi / 180}), Eigen::Vector3d::Zero()};
   const Pose bump{rotation_exp({0, 0, 5 * std::numbers::pi / 180}), {0.05, 0, 0}};
-  return {
+  std::vector<Mistake> all{
       {"none", "", [](Streams&) {}},
       {"a inverted", "inverted_a", [](Streams& s) { s.a = inverted(s.a); }},
       {"b inverted", "inverted_b", [](Streams& s) { s.b = inverted(s.b); }},
@@ -167,10 +164,11 @@ inline std::vector<Mistake> mistakes() {
        [=](Streams& s) { s.a = with_another_frame(s.a, metre_aside, at_random(1.0 / 3, 1)); }},
       {"a third of the poses of b, at random, a metre aside and turned by 2 deg", "mixed_frames_b",
        [=](Streams& s) { s.b = with_another_frame(s.b, metre_aside * turned, at_random(1.0 / 3, 2)); }}};
+  for (Mistake& mistake : mistakes_in_rows()) all.push_back(std::move(mistake));
+  return all;
 }
 
-/// The last of these, of rows: a few seconds do not show them. Late positions are none of them: at the one
-/// speed of simulated cars they are another lever arm (docs/trust.md, "What no verdict can detect").
-inline constexpr std::size_t mistakes_of_rows = 7;
+/// The last of these, of rows: a few seconds do not show them.
+inline const std::size_t mistakes_of_rows = 7 + mistakes_in_rows().size();
 
 }  // namespace egocal::testing

@@ -16,6 +16,7 @@
 #include "diagnosis/explanations/planes.hpp"
 #include "diagnosis/explanations/replacing.hpp"
 #include "diagnosis/explanations/times/clock_check.hpp"
+#include "diagnosis/explanations/times/clock_step.hpp"
 #include "diagnosis/explanations/times/held_stream.hpp"
 #include "diagnosis/explanations/times/late_positions.hpp"
 #include "diagnosis/explanations/times/late_rotations.hpp"
@@ -208,6 +209,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   if (has(result.findings, "too_little_motion")) misfit = {};  // noise contradicts every answer
   if (!explained)
     look_further(pairing, evidence, answered, result.fit, options, wrong_stream, misfit, result.findings);
+  if (pairing.mode != Mode::planar) name_clock_step(evidence, options, result.findings);
   add_what_is_beside(foreseen, options, wrong_stream, answered, result);
   misfit = where_known(misfit, moving, answered, best, result.findings);
   judge(result, answered, misfit, options);

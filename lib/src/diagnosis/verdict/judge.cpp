@@ -184,6 +184,11 @@ bool refutes(const Finding& finding, double far, const DiagnosisOptions& options
   return reading && far > 1 && finding.improvement > options.overwhelming;
 }
 
+/// A clock that was set during the drive: no one offset is right.
+bool clock_step(const Finding& finding) {
+  return finding.certain && finding.code == "clock_offset" && finding.time.has_value();
+}
+
 bool shows_all(const Observability& observability) {
   const auto& seen = observability.observable;
   return std::all_of(seen.begin(), seen.end(), [](bool one) { return one; });
@@ -213,8 +218,9 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
              (certain && finding.improvement > options.overwhelming))
       verdict = Verdict::contradictory;
     else if ((finding.code == "mount_moved" && !slight_move(finding, far, diagnosis.findings)) ||
-             finding.code == "scale_change" || finding.code.starts_with("plane_") || apart > near ||
-             significant_scale(finding, answered, options.scale_check) || (casts_doubt(finding) && far > 1))
+             finding.code == "scale_change" || clock_step(finding) || finding.code.starts_with("plane_") ||
+             apart > near || significant_scale(finding, answered, options.scale_check) ||
+             (casts_doubt(finding) && far > 1))
       verdict = Verdict::doubtful;
     if (verdict > worst.verdict) worst = {verdict, finding.message};
   }
