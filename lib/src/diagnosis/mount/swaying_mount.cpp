@@ -4,9 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 #include "diagnosis/words/wording.hpp"
 #include "egocal/geometry/pose.hpp"
+#include "statistics/median.hpp"
 
 namespace egocal::detail {
 
@@ -31,15 +36,13 @@ std::vector<double> squared_changes(const Instants& instants, const DualQuaterni
   return squares;
 }
 
-double mean(const std::vector<double>& values, double most) {
-  double sum = 0;
-  for (const double value : values) sum += std::min(value, most);
-  return sum / static_cast<double>(values.size());
-}
-
-/// Without the tails.
-double mean_square(const std::vector<double>& squares, const SwayOptions& options) {
-  return mean(squares, options.longest_square * mean(squares, INFINITY));
+/// Without the largest ones.
+double mean_square(std::vector<double> squares, const SwayOptions& options) {
+  const auto count =
+      static_cast<std::size_t>(std::ceil((1 - options.largest_part) * static_cast<double>(squares.size())));
+  if (count < squares.size()) order_statistic_in_place(squares, count);
+  return std::accumulate(squares.begin(), squares.begin() + static_cast<std::ptrdiff_t>(count), 0.0) /
+         static_cast<double>(count);
 }
 
 }  // namespace
@@ -54,7 +57,7 @@ double mean_square_by_interpolation(const Instants& instants, std::size_t poses,
     squares.push_back(rotation_log(to_pose(conjugate(here.a) * there.a).rotation).squaredNorm() +
                       rotation_log(to_pose(conjugate(here.b) * there.b).rotation).squaredNorm());
   }
-  return squares.empty() ? 0 : mean_square(squares, options);
+  return squares.empty() ? 0 : mean_square(std::move(squares), options);
 }
 
 std::vector<RotationChange> rotation_changes(const Instants& instants, const DualQuaternion& T_a_b,
@@ -64,9 +67,10 @@ std::vector<RotationChange> rotation_changes(const Instants& instants, const Dua
   for (std::size_t steps = 1; steps <= most;
        steps = std::max(steps + 1, static_cast<std::size_t>(
                                        std::lround(options.next_stride * static_cast<double>(steps))))) {
-    const std::vector<double> squares = squared_changes(instants, T_a_b, steps, motions, options);
+    std::vector<double> squares = squared_changes(instants, T_a_b, steps, motions, options);
     if (squares.size() < options.least_motions) continue;
-    changes.push_back({static_cast<double>(steps) * instants.period, mean_square(squares, options)});
+    changes.push_back(
+        {static_cast<double>(steps) * instants.period, mean_square(std::move(squares), options)});
   }
   return changes;
 }

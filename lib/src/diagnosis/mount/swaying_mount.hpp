@@ -19,12 +19,14 @@ struct SwayOptions {
   /// Root mean square of the change [rad]: larger than attitude errs in such a time, 1.4 times the standard
   /// deviation of the rotation.
   double least = 1.25 * std::numbers::pi / 180;
-  double longest_time = 30;              ///< in which it changes so [s]: a heading may err slowly
-  double next_stride = 1.25;             ///< each as a multiple of the one before
-  std::size_t most_motions = 500;        ///< of one stride, evenly spread
-  std::size_t least_motions = 8;         ///< of one stride
-  double longest_stride = 1.0 / 3;       ///< as a part of the drive
-  double longest_square = 9;             ///< squared changes count up to this many means
+  double longest_time = 30;         ///< in which it changes so [s]: a heading may err slowly
+  double next_stride = 1.25;        ///< each as a multiple of the one before
+  std::size_t most_motions = 500;   ///< of one stride, evenly spread
+  std::size_t least_motions = 8;    ///< of one stride
+  double longest_stride = 1.0 / 3;  ///< as a part of the drive
+  /// Of the squared changes, the largest ones that do not count: one pose in twenty that is wrong is in a
+  /// tenth of them.
+  double largest_part = 1.0 / 8;
   double before = 1.0 / 8;               ///< of the time: there the change is smaller
   double most_before = 0.5;              ///< as a part of the change; random walks have 0.35
   double flat_until = 4, looked_at = 8;  ///< times the time: the change is as large there

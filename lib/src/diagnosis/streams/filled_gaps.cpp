@@ -22,28 +22,33 @@ namespace {
 /// Poses of a stream, on one line [s].
 struct Line {
   double begin = 0, end = 0;
+  bool turns = false;  ///< positions alone: the rotations are the sensor's own
 };
 
-/// Whether the pose goes on as the last one did: all of it, or its position alone, which may also stay.
-bool goes_on(const Bends& bends) {
-  const bool moves_on = !bends.pose.rests && bends.pose.bent < 1;
-  const bool position_moves_on = !bends.position.rests && bends.position.bent < 1;
-  const bool position_stays = bends.position.rests && !bends.rotation.rests;
-  return moves_on || position_moves_on || position_stays;
+bool pose_goes_on(const Bends& bends) {
+  return !bends.pose.rests && bends.pose.bent < 1;
+}
+
+/// Whether the position goes on as it did last, or stays while the sensor turns.
+bool position_goes_on(const Bends& bends) {
+  return bends.position.rests ? !bends.rotation.rests : bends.position.bent < 1;
 }
 
 std::vector<Line> lines_of(const Trajectory& rows, const Times& times, const FilledGapsOptions& options) {
   std::vector<Line> lines;
   const std::size_t n = rows.size(), count = std::min(n, options.most), first = (n - count) / 2;
   std::size_t straight = 0;
+  bool turns = false;
   for (std::size_t i = first + 1; i + 1 <= first + count; ++i) {
     const std::optional<Bends> bends = i + 1 < first + count ? bends_at(rows, i) : std::nullopt;
-    if (bends && goes_on(*bends)) {
+    if (bends && (pose_goes_on(*bends) || position_goes_on(*bends))) {
       ++straight;
+      turns = turns || !pose_goes_on(*bends);
       continue;
     }
-    if (straight >= options.least) lines.push_back({times[i - straight - 1], times[i]});
+    if (straight >= options.least) lines.push_back({times[i - straight - 1], times[i], turns});
     straight = 0;
+    turns = false;
   }
   return lines;
 }
@@ -78,15 +83,15 @@ PairOfMotions motion_between(const Instants& instants, std::size_t from, std::si
   return {inverse(to_pose(begin.a)) * to_pose(end.a), inverse(to_pose(begin.b)) * to_pose(end.b)};
 }
 
-/// What motions over as many instants leave, of those that move as far, or turn as far; while the sensors
-/// stand there is little to leave. Empty where there are few.
+/// What motions over as many instants leave, of those that move as far and turn as far: of others there may
+/// be less to leave. Empty where there are few.
 std::optional<Residual> usual_of(const Instants& instants, std::size_t span, const PairOfMotions& motion,
                                  const Pose& T, const FilledGapsOptions& options) {
   std::vector<double> rotation, translation;
   const std::size_t each = std::max<std::size_t>(1, instants.size() / options.compared);
   for (std::size_t i = 0; i + span < instants.size(); i += each) {
     const PairOfMotions here = motion_between(instants, i, i + span);
-    if (here.length() < options.as_far * motion.length() && here.angle() < options.as_far * motion.angle())
+    if (here.length() < options.as_far * motion.length() || here.angle() < options.as_far * motion.angle())
       continue;
     const Residual left = here.left(T);
     rotation.push_back(left.rotation);
@@ -107,7 +112,9 @@ bool contradicts(const Instants& instants, const Line& line, const Pose& T,
     const std::optional<Residual> usual = usual_of(instants, end - begin, motion, T, options);
     const Residual left = motion.left(T);
     if (!usual) continue;
-    if (left.rotation > std::max(options.times * usual->rotation, options.least_left) ||
+    const bool turns_otherwise =
+        !line.turns && left.rotation > std::max(options.times * usual->rotation, options.least_left);
+    if (turns_otherwise ||
         left.translation > std::max(options.times * usual->translation, options.least_left * motion.length()))
       return true;
   }

@@ -18,7 +18,7 @@ struct FilledGapsOptions {
   double times = 10;
   double least_left = 2e-3;    ///< and this much [rad, and of the way]: less is noise of good sensors
   double usual = 0.25;         ///< the quantile that is: filled gaps may be in half of the motions
-  double as_far = 0.3;         ///< motions that are compared, as a part of the way or turn of a half line
+  double as_far = 0.3;         ///< motions that are compared, as a part of the way and turn of a half line
   std::size_t compared = 100;  ///< motions, evenly spread
   std::size_t fewest = 10;     ///< of them
 };

@@ -68,7 +68,7 @@ std::optional<UnexplainedPart> contradicting_tenths(const Fit& fit, std::size_t 
   if (motions < options.least || fit.tenths.empty()) return std::nullopt;
   std::vector<double> lengths;
   for (const FitTenth& tenth : fit.tenths)
-    if (std::isfinite(tenth.translation_median)) lengths.push_back(tenth.translation_median);
+    if (tenth.translation_median > 0) lengths.push_back(tenth.translation_median);
   const double usual = median(std::move(lengths));
   const auto contradicts = [&](const FitTenth& tenth) {
     return tenth.translation_relative > options.of_way && tenth.translation_median > options.times * usual;
@@ -77,6 +77,18 @@ std::optional<UnexplainedPart> contradicting_tenths(const Fit& fit, std::size_t 
   if (first == fit.tenths.end()) return std::nullopt;
   const auto last = std::find_if_not(first, fit.tenths.end(), contradicts);
   return UnexplainedPart{first->begin, std::prev(last)->end};
+}
+
+/// What is wrong with a part of the drive that contradicts the answer of the rest.
+std::optional<Finding> of_a_part(const Evidence& evidence, const Fit& fit, bool tenths_too,
+                                 const DiagnosisOptions& options) {
+  const Explained& given = evidence.given.explained;
+  std::optional<UnexplainedPart> part = unexplained_part(given.motions, given.fit.T);
+  if (!part && tenths_too) part = contradicting_tenths(fit, given.motions.all.size());
+  if (!part) return std::nullopt;
+  if (std::optional<Finding> scale = part_of_other_scale(given, part->begin, part->end, options))
+    return scale;
+  return unexplained(*part);
 }
 
 /// What the motions leave is the noise of their steps, and the translations agree.
@@ -166,7 +178,8 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     findings.insert(findings.begin(), wrong.begin(), wrong.end());
     return;
   }
-  if (answered.problem.mode != Mode::planar)
+  const bool planar = answered.problem.mode == Mode::planar;
+  if (!planar)
     if (std::optional<Finding> filled = filled_gaps(evidence, answered.T_a_b)) {
       findings.insert(findings.begin(), *std::move(filled));
       return;
@@ -186,7 +199,7 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     moves.clear();
   const bool of_both = std::any_of(findings.begin(), findings.end(),
                                    [](const Finding& one) { return one.code == "axes_both"; });
-  if (answered.problem.mode != Mode::planar && !of_both)
+  if (!planar && !of_both)
     if (std::optional<Finding> inverse = inverse_rotations_instead(evidence, moves, answered, options))
       findings.push_back(*std::move(inverse));
   moves = moves_or_else(std::move(moves), pairing, evidence, answered, readings_of_both(findings), options);
@@ -197,7 +210,7 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     findings.insert(findings.begin(), moves.begin(), moves.end());
     return;
   }
-  if (answered.problem.mode != Mode::planar)
+  if (!planar)
     if (std::optional<Finding> other = inverted_and_moved(evidence, answered, options)) {
       std::erase_if(findings, [](const Finding& one) { return one.code == "inverted_both"; });
       findings.push_back(*std::move(other));
@@ -208,13 +221,8 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
       findings.insert(findings.begin(), *std::move(scale));
       return;
     }
-  std::optional<UnexplainedPart> part =
-      unexplained_part(evidence.given.explained.motions, evidence.given.explained.fit.T);
-  if (!part && wrong.empty()) part = contradicting_tenths(fit, evidence.given.explained.motions.all.size());
-  if (part) {
-    std::optional<Finding> scale =
-        part_of_other_scale(evidence.given.explained, part->begin, part->end, options);
-    findings.push_back(scale ? *std::move(scale) : unexplained(*part));
+  if (std::optional<Finding> part = of_a_part(evidence, fit, wrong.empty(), options)) {
+    findings.push_back(*std::move(part));
     return;
   }
   if (!wrong.empty()) {
