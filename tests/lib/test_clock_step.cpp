@@ -33,7 +33,7 @@ TEST(ClockStep, IsNamedWithItsTimeItsSizeAndItsStream) {
         Trajectory& wrong = side == Side::a ? streams.a : streams.b;
         wrong = set_later(wrong, 0.5, seconds);
         const Calibration calibration = calibrate(streams.a, streams.b);
-        const Finding* step = find(calibration, "clock_offset");
+        const Finding* step = find(calibration, "clock_step");
         ASSERT_NE(step, nullptr) << seconds << ": " << calibration.reason;
         EXPECT_TRUE(step->certain) << step->message;
         ASSERT_TRUE(step->time && step->value && step->T_a_b);
@@ -55,7 +55,7 @@ TEST(ClockStep, IsNoneOfAMountingThatWasKnocked) {
       streams.b = testing::knocked(streams.b, 0.5, {rotation_exp({0, size, size}), {size, 0, 0}});
       const Calibration calibration = calibrate(streams.a, streams.b);
       EXPECT_NE(find(calibration, "mount_moved"), nullptr) << size << ": " << calibration.reason;
-      const Finding* step = find(calibration, "clock_offset");
+      const Finding* step = find(calibration, "clock_step");
       EXPECT_TRUE(step == nullptr || !step->certain) << step->message;
     }
 }

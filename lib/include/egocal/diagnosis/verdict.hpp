@@ -65,18 +65,19 @@ struct Finding {
   /// time_unit, stamps_a|_b, axes_a|_b|_both, late_positions_a|_b, turning_scale_a|_b, plane_a|_b,
   /// mount_moved, unrelated, frozen_a|_b, missing_a|_b, flat_a|_b, same_stream, samples, wrong_samples,
   /// undersampled_a|_b, held_a|_b, mixed_frames_a|_b, odometry, nominal, reversed_steps, filled_a|_b,
-  /// too_little_motion. docs/findings.md says what each means.
+  /// clock_step, too_little_motion. docs/findings.md says what each means.
   std::string code;
   bool certain = false;       ///< it fits clearly better; otherwise both remain possible
   std::string message;        ///< what was found, one sentence
   std::string remedy;         ///< option or action that cures it
   double improvement = 1;     ///< squared residuals as given / under this explanation
   std::optional<Pose> T_a_b;  ///< the answer under this explanation, where it has one
-  /// mount_moved, scale_change, unrelated, filled_a|_b, and a clock_offset that begins: since the first pose
+  /// mount_moved, scale_change, unrelated, filled_a|_b, clock_step: since the first pose
   /// of a [s].
   std::optional<double> time;
   std::optional<double>
       value;  ///< scale and units: factor of b's lengths; clock_offset: added to b [s];
+              ///< clock_step: how much more is added to b from then on [s];
               ///< clock_drift: rate of b's clock against a's [s/s]; late_positions_a|_b:
               ///< how late they are [s]; time_unit, turning_scale_a|_b: factor; held_a|_b: new ones a second
   FindingWords words{};                    ///< of message and remedy, for those who name the streams

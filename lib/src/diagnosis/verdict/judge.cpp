@@ -143,9 +143,10 @@ bool wrong_nominal(const Finding& finding) {
 /// The streams mean something else than was taken: whatever the answer is, it is not theirs.
 bool misread(const Finding& finding) {
   return finding.certain && !wrong_nominal(finding) && finding.code != "scale" &&
-         finding.code != "clock_offset" && finding.code != "clock_drift" && finding.code != "mount_moved" &&
-         finding.code != "scale_change" && !finding.code.starts_with("late_positions_") &&
-         !finding.code.starts_with("held_") && !stream_fault(finding) && !undersampling(finding);
+         finding.code != "clock_offset" && finding.code != "clock_drift" && finding.code != "clock_step" &&
+         finding.code != "mount_moved" && finding.code != "scale_change" &&
+         !finding.code.starts_with("late_positions_") && !finding.code.starts_with("held_") &&
+         !stream_fault(finding) && !undersampling(finding);
 }
 
 /// A clock that is off by little, which noise alone may show: half a minute on rails knows x to metres, and
@@ -186,7 +187,7 @@ bool refutes(const Finding& finding, double far, const DiagnosisOptions& options
 
 /// A clock that was set during the drive: no one offset is right.
 bool clock_step(const Finding& finding) {
-  return finding.certain && finding.code == "clock_offset" && finding.time.has_value();
+  return finding.certain && finding.code == "clock_step";
 }
 
 bool shows_all(const Observability& observability) {

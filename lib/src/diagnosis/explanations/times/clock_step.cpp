@@ -172,7 +172,7 @@ std::optional<Jump> jump_of(const Evidence& evidence, const ClockStep& step, con
 Finding worded(const Evidence& evidence, const ClockStep& step, double gain, bool certain,
                const ClockStepOptions& tuning) {
   Finding finding;
-  finding.code = "clock_offset";
+  finding.code = "clock_step";
   finding.certain = certain;
   const std::optional<Jump> jump = jump_of(evidence, step, tuning);
   const double time = jump ? jump->time : step.time;

@@ -35,7 +35,7 @@ struct ClockStepOptions {
   double same_jump = 0.5;
 };
 
-/// Names a step of a clock, clock_offset with a time, where findings say that one explanation does not hold
+/// Finding clock_step with its time and size, where findings say that one explanation does not hold
 /// for all of the drive: that the mount moved, the lengths or clocks change, or parts contradict. The offset
 /// of each part with one mounting is compared with a mounting for each part, and with what else was found. It
 /// replaces these where it explains clearly more, and stands beside them, uncertain, where it explains as
