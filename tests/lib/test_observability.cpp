@@ -17,7 +17,7 @@ namespace {
 
 using testing::displacement;
 using testing::motions_of_a;
-using testing::planar;
+using testing::planar_motion_of_a;
 using testing::problem_of;
 using testing::Random;
 using testing::random_pairs;
@@ -40,7 +40,8 @@ TEST(Observability, FreeMotionShowsEverything) {
 TEST(Observability, HeightIsNeverSeenInPlanarMotion) {
   for (const double noise : {0.0, 1e-9, 1e-6, 1e-3, 0.01, 0.05, 0.1})
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
-      const Answer answer = solve(problem_of(motions_of_a(T_a_b, 300, noise, seed, planar)), Method::dual);
+      const Answer answer =
+          solve(problem_of(motions_of_a(T_a_b, 300, noise, seed, planar_motion_of_a)), Method::dual);
       const Flags& seen = answer.observability.observable;
       EXPECT_FALSE(seen[2]) << noise << " " << seed;
       EXPECT_TRUE(std::isinf(answer.observability.stddev[2]));
@@ -90,14 +91,14 @@ TEST(Observability, NoMotionShowsNothing) {
 }
 
 TEST(Observability, OnePairShowsNoTranslationAlongItsAxis) {
-  const Answer answer = solve(problem_of(motions_of_a(T_a_b, 1, 0, 1, planar)), Method::dual);
+  const Answer answer = solve(problem_of(motions_of_a(T_a_b, 1, 0, 1, planar_motion_of_a)), Method::dual);
   EXPECT_FALSE(answer.observability.observable[2]);
   EXPECT_TRUE(answer.T_a_b.vec().allFinite());
 }
 
 TEST(Observability, FlatDirectionsAreTakenFromThePrior) {
   // true except for the height: the motions give x, y and the rotation, the prior gives z
-  Problem problem = problem_of(motions_of_a(T_a_b, 100, 0, 1, planar));
+  Problem problem = problem_of(motions_of_a(T_a_b, 100, 0, 1, planar_motion_of_a));
   Pose prior = to_pose(T_a_b);
   prior.translation += Eigen::Vector3d(0.3, -0.2, 0.7);
   prior.rotation = prior.rotation * rotation_exp({0.05, 0.02, -0.03});
@@ -126,7 +127,7 @@ Problem noisy_problem_with_prior(const std::vector<MotionPair>& pairs) {
 
 TEST(Observability, NoiseAloneDoesNotReplaceThePrior) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    Problem problem = noisy_problem_with_prior(motions_of_a(T_a_b, 300, 0.01, seed, planar));
+    Problem problem = noisy_problem_with_prior(motions_of_a(T_a_b, 300, 0.01, seed, planar_motion_of_a));
     const Pose prior = to_pose(*problem.prior);
     Problem without = problem;
     without.prior.reset();
@@ -208,8 +209,9 @@ TEST(Observability, HiddenHeightCountsWhereATiltedSensorSeesIt) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
       const DualQuaternion tilted = displacement({0, tilt, 0}, {0, 0, 0});
       const DualQuaternion T = conjugate(tilted) * T_a_b;
-      const std::vector<MotionPair> pairs = motions_of_a(
-          T, 300, 0.003, seed, [&](Random& random) { return conjugate(tilted) * planar(random) * tilted; });
+      const std::vector<MotionPair> pairs = motions_of_a(T, 300, 0.003, seed, [&](Random& random) {
+        return conjugate(tilted) * planar_motion_of_a(random) * tilted;
+      });
       const Answer answer = solve(problem_of(pairs), Method::dual);
       ASSERT_TRUE(answer.observability.observable[0]) << tilt << " " << seed;
       const Eigen::Vector3d found = to_pose(answer.T_a_b).translation;
@@ -227,7 +229,7 @@ TEST(Observability, PlanarModeShowsXYAndYaw) {
   const GroundPlane plane_a{Eigen::Vector3d::UnitZ(), -1.8}, plane_b{Eigen::Vector3d(0, -1, 0), -1.6};
   const DualQuaternion G_a = plane_frame(plane_a), G_b = plane_frame(plane_b);
   const DualQuaternion T = extrinsic_from_planar(displacement({0, 0, 0.4}, {1, 2, 0}), G_a, G_b);
-  std::vector<MotionPair> pairs = motions_of_a(T, 300, 0.01, 1, planar);
+  std::vector<MotionPair> pairs = motions_of_a(T, 300, 0.01, 1, planar_motion_of_a);
   for (MotionPair& pair : pairs) pair = {planar_motion(pair.a, G_a), planar_motion(pair.b, G_b)};
   Problem problem = problem_of(pairs);
   problem.mode = Mode::planar;

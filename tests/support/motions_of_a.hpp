@@ -41,7 +41,7 @@ inline std::vector<MotionPair> motions_of_a(const DualQuaternion& T, int n, doub
 
 inline const DualQuaternion T_a_b = displacement({0.4, -1.1, 0.7}, {0.5, -2, 1.2});
 
-inline DualQuaternion planar(Random& random) {
+inline DualQuaternion planar_motion_of_a(Random& random) {
   const double yaw = 0.05 * random.normal(), x = 1 + 0.1 * random.normal(), y = 0.05 * random.normal();
   return displacement({0, 0, yaw}, {x, y, 0});
 }
