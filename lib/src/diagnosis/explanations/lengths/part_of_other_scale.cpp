@@ -111,8 +111,10 @@ std::optional<Finding> part_of_other_scale(const Explained& given, double begin,
       format("From %.0f to %.0f s after the start the lengths of %s must be multiplied by %.4g, those of the "
              "rest by 1",
              from, to, mark('b'), factor),
-      format("Write all poses of %s in one unit, or use the part of the drive that is in it.", mark('b')),
-      ": a part of it is in another unit.");
+      format("Write all poses of %s in one unit; where an odometry lost its scale there, use the rest of the "
+             "drive.",
+             mark('b')),
+      ": that part is in another unit, or the odometry of one sensor lost its scale there.");
   finding.improvement = std::exp(comparison.gain);
   finding.time = from;
   finding.T_a_b = to_pose(here.fit.T);
