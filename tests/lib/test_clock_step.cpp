@@ -48,6 +48,23 @@ TEST(ClockStep, IsNamedWithItsTimeItsSizeAndItsStream) {
       }
 }
 
+/// Where nothing else is found: one half explains the other one's turns as outliers.
+TEST(ClockStep, IsNamedAtAConstantSpeed) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    SimulationOptions options;
+    options.poses = 601;
+    options.relative_noise = 0.01;
+    options.seed = seed;
+    testing::Streams streams = testing::simulated_drive(options);
+    streams.b = set_later(streams.b, 0.5, 0.3);
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    const Finding* step = find(calibration, "clock_step");
+    ASSERT_NE(step, nullptr) << seed << ": " << calibration.reason;
+    EXPECT_NEAR(*step->value, -0.3, 0.02);
+    EXPECT_GE(calibration.verdict, Verdict::doubtful);
+  }
+}
+
 TEST(ClockStep, IsNoneOfAMountingThatWasKnocked) {
   for (const Terrain terrain : {Terrain::rough, Terrain::free})
     for (const double size : {0.03, 0.1}) {

@@ -81,5 +81,33 @@ TEST(FilledGaps, EvenMotionIsNone) {
   EXPECT_EQ(find(calibration, "filled_b"), nullptr) << calibration.reason;
 }
 
+/// Wheels that turn a robot in place keep its position to rounding, and slip: its rotations are off by more
+/// than while it drives straight on.
+TEST(FilledGaps, TurningInPlaceIsNone) {
+  for (const int seed : {1, 2}) {
+    const Pose T{rotation_exp({0.02, -0.03, 0.4}), {0.4, 0.1, 0.3}};
+    Trajectory a, b;
+    Pose here, measured;
+    for (int i = 0; i < 1200; ++i) {
+      const bool turns = i / 60 % 2 == 1;
+      const double noise = std::sin(12.9898 * i + seed) + std::sin(78.233 * i);
+      const double turn = turns ? 0.03 * (i / 120 % 2 == 0 ? 1 : -1) : 1e-4 * noise;
+      const double way = turns ? 0 : 0.05 + 1e-4 * noise;
+      here = here * Pose{rotation_exp({0, 0, turn}), {way, 0, 0}};
+      measured = measured * Pose{rotation_exp({0, 0, turns ? 1.03 * turn : turn}), {way, 0, 0}};
+      a.push_back({i * 50'000, canonical_sign(to_dual_quaternion(measured))});
+      const Pose of_b = here * T;
+      b.push_back(
+          {i * 50'000,
+           canonical_sign(to_dual_quaternion(
+               Pose{(of_b.rotation * rotation_exp({2e-4 * noise, -2e-4 * noise, 2e-4 * noise})).normalized(),
+                    of_b.translation + 1e-3 * noise * Eigen::Vector3d(1, -1, 1)}))});
+    }
+    const Calibration calibration = calibrate(a, b);
+    EXPECT_EQ(find(calibration, "filled_a"), nullptr) << calibration.reason;
+    EXPECT_EQ(find(calibration, "filled_b"), nullptr) << calibration.reason;
+  }
+}
+
 }  // namespace
 }  // namespace egocal::test_filled_gaps

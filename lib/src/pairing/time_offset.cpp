@@ -23,31 +23,30 @@ using namespace detail;
 
 struct TimeOffsetSearch::Impl {
   struct Stream {
-    Trajectory given, poses;
+    Trajectory poses;
     std::int64_t period_us = 0;  ///< median
     std::vector<Detour> detours;
     Detour typical;
-    std::size_t kept = 0;  ///< of the poses looked at for glitches, at the front
+    std::size_t kept = 0;  ///< of the poses looked at so far, at the front
     std::vector<StepDifference> steps;
     Series angles;
   };
 
   Impl(const Trajectory& given_a, const Trajectory& given_b, const TimeOffsetOptions& given)
       : options(given) {
-    a.given = given_a;
-    b.given = given_b;
+    a.poses = given_a;
+    b.poses = given_b;
     const auto least_us = static_cast<std::int64_t>(options.least_spacing * second_us);
-    for (Stream* stream : {&a, &b})
-      schedule.add_range(stream->given.size(), [stream, least_us](std::size_t begin, std::size_t end) {
-        if (begin == 0) stream->poses.reserve(stream->given.size());
-        append_thinned(stream->given, begin, end, least_us, stream->poses);
+    for (Stream* stream : {&a, &b}) {
+      schedule.add_range(stream->poses.size(), [stream, least_us](std::size_t begin, std::size_t end) {
+        stream->kept = thin(stream->poses, begin, end, stream->kept, least_us);
       });
-    for (Stream* stream : {&a, &b})
-      schedule.add(stream->given.size() / 16, [this, stream] {
-        stream->given = {};
-        if (long_enough()) stream->period_us = median_period_us(stream->poses);
+      schedule.add(stream->poses.size() / 16, [stream] {
+        stream->poses.resize(stream->kept);
+        if (stream->poses.size() > 1) stream->period_us = median_period_us(stream->poses);
       });
-    schedule.add((a.given.size() + b.given.size()) / 16, [this] { prepare(); });
+    }
+    schedule.add((a.poses.size() + b.poses.size()) / 16, [this] { prepare(); });
   }
 
   bool long_enough() const { return a.poses.size() >= 10 && b.poses.size() >= 10; }

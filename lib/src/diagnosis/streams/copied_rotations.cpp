@@ -44,7 +44,7 @@ bool are_copies(const Timed& rows, const Timed& others, double max_gap,
                 const CopiedRotationsOptions& options) {
   std::vector<double> angles, differences;
   std::optional<std::pair<Rotation, Rotation>> last;
-  const std::size_t each = std::max<std::size_t>(1, rows.poses.size() / options.looked_at);
+  const std::size_t each = (rows.poses.size() + options.looked_at - 1) / options.looked_at;
   for (std::size_t i = 0; i < rows.poses.size(); i += each) {
     const std::optional<Rotation> other = rotation_at(others, rows.times[i], max_gap);
     if (!other) continue;

@@ -34,7 +34,7 @@ bool position_goes_on(const Bends& bends) {
   return bends.position.rests ? !bends.rotation.rests : bends.position.bent < 1;
 }
 
-std::vector<Line> lines_of(const Trajectory& rows, const Times& times, const FilledGapsOptions& options) {
+std::vector<Line> lines_in(const Trajectory& rows, const Times& times, const FilledGapsOptions& options) {
   std::vector<Line> lines;
   const std::size_t n = rows.size(), count = std::min(n, options.most), first = (n - count) / 2;
   std::size_t straight = 0;
@@ -50,6 +50,12 @@ std::vector<Line> lines_of(const Trajectory& rows, const Times& times, const Fil
     straight = 0;
     turns = false;
   }
+  if (lines.size() <= options.most_lines) return lines;
+  const auto longer = [](const Line& x, const Line& y) { return x.end - x.begin > y.end - y.begin; };
+  const auto earlier = [](const Line& x, const Line& y) { return x.begin < y.begin; };
+  std::stable_sort(lines.begin(), lines.end(), longer);
+  lines.resize(options.most_lines);
+  std::sort(lines.begin(), lines.end(), earlier);
   return lines;
 }
 
@@ -88,7 +94,7 @@ PairOfMotions motion_between(const Instants& instants, std::size_t from, std::si
 std::optional<Residual> usual_of(const Instants& instants, std::size_t span, const PairOfMotions& motion,
                                  const Pose& T, const FilledGapsOptions& options) {
   std::vector<double> rotation, translation;
-  const std::size_t each = std::max<std::size_t>(1, instants.size() / options.compared);
+  const std::size_t each = (instants.size() + options.compared - 1) / options.compared;
   for (std::size_t i = 0; i + span < instants.size(); i += each) {
     const PairOfMotions here = motion_between(instants, i, i + span);
     if (here.length() < options.as_far * motion.length() || here.angle() < options.as_far * motion.angle())
@@ -131,7 +137,7 @@ std::optional<Finding> filled_gaps(const Evidence& evidence, const DualQuaternio
     const Times times(rows, evidence.streams.a.front().time_us,
                       side == Side::a ? ClockModel{} : evidence.clock);
     std::vector<Line> filled;
-    for (const Line& line : lines_of(rows, times, options))
+    for (const Line& line : lines_in(rows, times, options))
       if (contradicts(evidence.instants, line, T, options)) filled.push_back(line);
     if (filled.empty()) continue;
     const char which = side == Side::a ? 'a' : 'b';

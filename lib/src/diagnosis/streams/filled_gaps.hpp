@@ -13,6 +13,7 @@ namespace egocal::detail {
 struct FilledGapsOptions {
   std::size_t most = 20000;  ///< poses that are looked at, from the middle: bounds the cost of a long drive
   std::size_t least = 10;    ///< poses on one line
+  std::size_t most_lines = 100;  ///< the longest ones, which are looked at: bounds the cost of smooth streams
   /// The motions of either half of a line leave this many times what is usual, in rotation or translation:
   /// a sensor that really moves evenly agrees with the other one.
   double times = 10;

@@ -209,7 +209,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   if (has(result.findings, "too_little_motion")) misfit = {};  // noise contradicts every answer
   if (!explained)
     look_further(pairing, evidence, answered, result.fit, options, wrong_stream, misfit, result.findings);
-  if (pairing.mode != Mode::planar) name_clock_step(evidence, options, result.findings);
+  if (pairing.mode != Mode::planar) name_clock_step(evidence, result.fit, options, result.findings);
   add_what_is_beside(foreseen, options, wrong_stream, answered, result);
   misfit = where_known(misfit, moving, answered, best, result.findings);
   judge(result, answered, misfit, options);

@@ -47,6 +47,9 @@ struct ContradictingTenthsOptions {
   std::size_t least = 100;  ///< motions of the drive: ten of each tenth
   double of_way = 0.5;      ///< median residual of a tenth, as a part of the way
   double times = 3;         ///< and in metres, as a multiple of the median tenth
+  /// And as a part of the tolerance of an answer: 3 cm. Sensors that stand but shake left up to 1.3 cm in 163
+  /// clean drives, which is any part of their way.
+  double of_tolerance = 0.05;
 };
 
 /// Where the scale of less than half of the drive is another one, its tenths show it. While the sensors stand
@@ -63,15 +66,15 @@ bool scale_may_change(const Fit& fit, const DiagnosisOptions& options) {
 
 /// Tenths whose translations contradict the answer, one after the other, while those of most do not. Where
 /// the sensors stand, any residual is a large part of the way, but no larger in metres.
-std::optional<UnexplainedPart> contradicting_tenths(const Fit& fit, std::size_t motions) {
+std::optional<UnexplainedPart> contradicting_tenths(const Fit& fit, std::size_t motions, double tolerance) {
   const ContradictingTenthsOptions options;
   if (motions < options.least || fit.tenths.empty()) return std::nullopt;
   std::vector<double> lengths;
   for (const FitTenth& tenth : fit.tenths)
     if (tenth.translation_median > 0) lengths.push_back(tenth.translation_median);
-  const double usual = median(std::move(lengths));
+  const double least = std::max(options.times * median(std::move(lengths)), options.of_tolerance * tolerance);
   const auto contradicts = [&](const FitTenth& tenth) {
-    return tenth.translation_relative > options.of_way && tenth.translation_median > options.times * usual;
+    return tenth.translation_relative > options.of_way && tenth.translation_median > least;
   };
   const auto first = std::find_if(fit.tenths.begin(), fit.tenths.end(), contradicts);
   if (first == fit.tenths.end()) return std::nullopt;
@@ -84,7 +87,8 @@ std::optional<Finding> of_a_part(const Evidence& evidence, const Fit& fit, bool 
                                  const DiagnosisOptions& options) {
   const Explained& given = evidence.given.explained;
   std::optional<UnexplainedPart> part = unexplained_part(given.motions, given.fit.T);
-  if (!part && tenths_too) part = contradicting_tenths(fit, given.motions.all.size());
+  if (!part && tenths_too)
+    part = contradicting_tenths(fit, given.motions.all.size(), options.tolerance_translation);
   if (!part) return std::nullopt;
   if (std::optional<Finding> scale = part_of_other_scale(given, part->begin, part->end, options))
     return scale;

@@ -47,25 +47,22 @@ std::int64_t median_period_us(const Trajectory& trajectory) {
   return std::max<std::int64_t>(1, median(std::move(periods)));
 }
 
-void append_thinned(const Trajectory& trajectory, std::size_t begin, std::size_t end, std::int64_t least_us,
-                    Trajectory& result) {
+std::size_t thin(Trajectory& trajectory, std::size_t begin, std::size_t end, std::size_t kept,
+                 std::int64_t least_us) {
   for (std::size_t i = begin; i < end; ++i) {
-    const StampedPose& pose = trajectory[i];
+    const StampedPose pose = trajectory[i];
     if (!plausible_relative_time(pose.time_us) || !pose.pose.vec().allFinite() ||
         !plausible_norm(pose.pose.real.norm()))
       continue;
-    if (result.empty() || pose.time_us - result.back().time_us >= least_us) {
-      result.push_back(pose);
-      result.back().pose = normalized(pose.pose);
-    }
+    if (kept == 0 || pose.time_us - trajectory[kept - 1].time_us >= least_us)
+      trajectory[kept++] = {pose.time_us, normalized(pose.pose)};
   }
+  return kept;
 }
 
-Trajectory thinned(const Trajectory& trajectory, std::int64_t least_us) {
-  Trajectory result;
-  result.reserve(trajectory.size());
-  append_thinned(trajectory, 0, trajectory.size(), least_us, result);
-  return result;
+Trajectory thinned(Trajectory trajectory, std::int64_t least_us) {
+  trajectory.resize(thin(trajectory, 0, trajectory.size(), 0, least_us));
+  return trajectory;
 }
 
 Trajectory dense_part(Trajectory trajectory, std::int64_t max_gap_us, std::int64_t most_sparse) {

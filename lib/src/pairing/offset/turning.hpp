@@ -17,10 +17,11 @@ std::int64_t median_period_us(const Trajectory& trajectory);
 
 /// The trajectory with unit poses, without invalid poses and without those less than `least_us` (positive)
 /// after the one before.
-Trajectory thinned(const Trajectory& trajectory, std::int64_t least_us);
-/// The same in pieces: appends what the poses [begin, end) add to the result of those before.
-void append_thinned(const Trajectory& trajectory, std::size_t begin, std::size_t end, std::int64_t least_us,
-                    Trajectory& result);
+Trajectory thinned(Trajectory trajectory, std::int64_t least_us);
+/// The same in pieces and in place: of the poses [begin, end), those that stay follow the first `kept` ones,
+/// which are what stays of the poses before. Returns how many stay up to here.
+std::size_t thin(Trajectory& trajectory, std::size_t begin, std::size_t end, std::size_t kept,
+                 std::int64_t least_us);
 
 /// The part with most poses among those that last at most most_sparse times the known time, so that a stray
 /// stamp far away does not lengthen the grid. The known time is that between poses at most max_gap_us apart.

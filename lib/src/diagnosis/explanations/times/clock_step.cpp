@@ -14,6 +14,7 @@
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/microseconds.hpp"
+#include "statistics/quantile.hpp"
 
 namespace egocal::detail {
 
@@ -53,6 +54,10 @@ Streams streams_of(const Evidence& evidence, const Trajectory& a, const Trajecto
   Streams streams{a,           b,         all.read_a, all.read_b, all.max_gap, all.motion_length,
                   all.options, turning_a, turning_b,  all.each,   all.grid};
   streams.motion_length = evidence.stride * evidence.instants.period;
+  // a long drive has more instants than a clock needs: a few in each motion
+  streams.each =
+      std::clamp<std::size_t>(evidence.instants.size() / all.options.clock.instants, 1,
+                              std::max<std::size_t>(1, static_cast<std::size_t>(evidence.stride) / 8));
   return streams;
 }
 
@@ -90,10 +95,11 @@ std::optional<ClockStep> step_at(const Evidence& evidence, double time, const Di
 std::vector<std::pair<double, double>> left_at(const Evidence& evidence, double offset,
                                                const ClockStep& step) {
   constexpr int shorter = 4;  // motions that cross the step fit neither clock: few, where they are short
-  Streams streams = streams_of(evidence, evidence.streams.a, evidence.streams.b, {}, {});
+  Streams streams =
+      streams_of(evidence, evidence.streams.a, evidence.streams.b, evidence.turning_a, evidence.turning_b);
   streams.motion_length = std::max(1, evidence.stride / shorter) * evidence.instants.period;
-  const Instants instants =
-      synchronised(streams.a, streams.b, {offset, 0, 0}, streams.max_gap, 1, streams.options.motions);
+  const Instants instants = synchronised(streams.a, streams.b, {offset, 0, 0}, streams.max_gap, streams.each,
+                                         streams.options.motions);
   std::vector<std::pair<double, double>> result;
   if (instants.size() < 2 || !(instants.period > 0)) return result;
   const int stride = std::max(1, static_cast<int>(std::lround(streams.motion_length / instants.period)));
@@ -211,13 +217,22 @@ bool may_be_a_step(const Finding& finding) {
          (code == "unrelated" && finding.time);
 }
 
+/// Whether the rotations of some tenths contradict the answer, as on the other clock they do.
+bool contradicted_by_tenths(const Fit& fit, const ClockStepOptions& tuning) {
+  std::vector<double> left;
+  for (const FitTenth& tenth : fit.tenths)
+    if (std::isfinite(tenth.rotation_median)) left.push_back(tenth.rotation_median);
+  return !left.empty() && *std::max_element(left.begin(), left.end()) >
+                              std::max(tuning.contradicts * quantile(left, 0.25), tuning.least_contradiction);
+}
+
 }  // namespace
 
-void name_clock_step(const Evidence& evidence, const DiagnosisOptions& options,
+void name_clock_step(const Evidence& evidence, const Fit& fit, const DiagnosisOptions& options,
                      std::vector<Finding>& findings, const ClockStepOptions& tuning) {
   std::vector<Finding> moves;
   double rival = 0;
-  bool changes = false;
+  bool changes = contradicted_by_tenths(fit, tuning);
   for (const Finding& finding : findings) {
     if (!may_be_a_step(finding)) continue;
     changes = true;

@@ -33,14 +33,17 @@ struct ClockStepOptions {
   /// A jump of the stamps is that of the step where it differs from it by less than this part of the distance
   /// of two poses.
   double same_jump = 0.5;
+  /// A step is looked for where a tenth of the drive leaves this many times the rotation that the best
+  /// quarter of the tenths leaves, and this much [rad]; this costs time alone, as the step must explain more.
+  double contradicts = 4, least_contradiction = 0.005;
 };
 
 /// Finding clock_step with its time and size, where findings say that one explanation does not hold
-/// for all of the drive: that the mount moved, the lengths or clocks change, or parts contradict. The offset
-/// of each part with one mounting is compared with a mounting for each part, and with what else was found. It
-/// replaces these where it explains clearly more, and stands beside them, uncertain, where it explains as
-/// much. Not for planar answers.
-void name_clock_step(const Evidence& evidence, const DiagnosisOptions& options,
+/// for all of the drive: that the mount moved, the lengths or clocks change, or parts contradict; and where
+/// tenths of the drive do (fit). The offset of each part with one mounting is compared with a mounting for
+/// each part, and with what else was found. It replaces these where it explains clearly more, and stands
+/// beside them, uncertain, where it explains as much. Not for planar answers.
+void name_clock_step(const Evidence& evidence, const Fit& fit, const DiagnosisOptions& options,
                      std::vector<Finding>& findings, const ClockStepOptions& tuning = {});
 
 }  // namespace egocal::detail
