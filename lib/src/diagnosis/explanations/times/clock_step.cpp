@@ -141,8 +141,12 @@ double best_time(const Evidence& evidence, const ClockStep& step) {
 std::optional<ClockStep> refined(const Evidence& evidence, double time, const DiagnosisOptions& options,
                                  const ClockStepOptions& tuning) {
   std::optional<ClockStep> step = step_at(evidence, time, options, tuning);
-  for (int round = 1; step && round < tuning.rounds; ++round)
+  for (int round = 1; step && round < tuning.rounds; ++round) {
+    // most moves are no steps, and each round costs as much as the search for a constant offset
+    if (!(compare(evidence.given.explained, step->explained).gain > tuning.promising * options.gain))
+      return step;
     step = step_at(evidence, best_time(evidence, *step), options, tuning);
+  }
   return step;
 }
 
@@ -244,7 +248,7 @@ void name_clock_step(const Evidence& evidence, const Fit& fit, const DiagnosisOp
   const double length = to_seconds(evidence.streams.a.back().time_us - evidence.streams.a.front().time_us);
   std::vector<double> times;
   for (const Finding& move : moves) times.push_back(*move.time);
-  for (std::size_t k = 1; k <= tuning.places; ++k)
+  for (std::size_t k = 1; moves.empty() && k <= tuning.places; ++k)
     times.push_back(length * static_cast<double>(k) / static_cast<double>(tuning.places + 1));
   std::optional<ClockStep> best;
   double gain = 0;

@@ -14,12 +14,13 @@ namespace egocal::detail {
 
 /// "Study": steps of 0.05 to 2 s of either clock and knocked mounts in drives of docs/trust_measured.md.
 struct ClockStepOptions {
-  /// Divisions of the drive that are tried besides those found so far, evenly. A part that holds a third of
-  /// the other one still shows its own clock, as the fit is robust.
+  /// Divisions of the drive that are tried where no move of a mounting gives one, evenly. A part that holds a
+  /// third of the other one still shows its own clock, as the fit is robust.
   std::size_t places = 3;
   /// Each part has this many motions, at least.
   std::size_t least_motions = 16;
-  int rounds = 2;  ///< the time of the step and the clocks are found from each other
+  int rounds = 2;          ///< the time of the step and the clocks are found from each other
+  double promising = 0.5;  ///< of DiagnosisOptions::gain: what a further round needs
   /// Two explanations whose mean log ratios of squared residuals differ by less cannot be told apart, and
   /// both are named: three times what chance makes of one number in the drives of the study.
   double alike = 0.15;
