@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "../support/findings.hpp"
+#include "../support/mistakes.hpp"
 #include "../support/random_motion.hpp"
 #include "../support/simulated_drive.hpp"
 #include "egocal/calibrate.hpp"
@@ -20,6 +21,8 @@ namespace egocal::test_other_rows {
 namespace {
 
 using testing::find;
+using testing::with_positions_of_row;
+using testing::with_turned_steps;
 
 Finding certain_finding(const Calibration& calibration, const std::string& code) {
   const Finding* finding = find(calibration, code);
@@ -37,19 +40,6 @@ void expect_cured(const testing::Streams& right, const Calibration& calibration,
   const ExtrinsicError error = extrinsic_error(right.T, to_dual_quaternion(*finding.T_a_b));
   EXPECT_LT(error.rotation, rotation) << finding.message;
   EXPECT_LT(error.translation, translation) << finding.message;
-}
-
-/// Steps of b summed up again, each turned on by a part of the turn of its row.
-Trajectory with_turned_steps(const Trajectory& right, double part) {
-  Trajectory result{right.front()};
-  Eigen::Vector3d position = to_pose(right.front().pose).translation;
-  for (std::size_t i = 1; i < right.size(); ++i) {
-    const Pose before = to_pose(right[i - 1].pose), here = to_pose(right[i].pose);
-    const Rotation turn = rotation_exp(part * rotation_log(here.rotation * before.rotation.conjugate()));
-    position += turn * (here.translation - before.translation);
-    result.push_back({right[i].time_us, canonical_sign(to_dual_quaternion(Pose{here.rotation, position}))});
-  }
-  return result;
 }
 
 /// A car of 2 Hz that stops, backs and turns: at a constant speed these are poses of another point of the
@@ -112,19 +102,6 @@ TEST(OtherRows, StepsAreNotCalledTurnedWhereTheyAreRightOrPositionsAreEarly) {
     EXPECT_TRUE(find(late, "late_positions_b") != nullptr || find(late, "late_positions_a") != nullptr)
         << late.reason;
   }
-}
-
-/// Each position from another row; the rotations stay.
-Trajectory with_positions_of_row(const Trajectory& right, int later) {
-  Trajectory result;
-  const auto n = static_cast<int>(right.size());
-  for (int i = std::max(0, -later); i < n - std::max(0, later); ++i) {
-    const StampedPose &here = right[static_cast<std::size_t>(i)],
-                      &there = right[static_cast<std::size_t>(i + later)];
-    result.push_back({here.time_us, canonical_sign(to_dual_quaternion(Pose{
-                                        to_pose(here.pose).rotation, to_pose(there.pose).translation}))});
-  }
-  return result;
 }
 
 /// With noise that hides it from the parts of the drive, but not from all together.

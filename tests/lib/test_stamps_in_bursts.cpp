@@ -19,18 +19,9 @@
 namespace egocal::test_stamps_in_bursts {
 namespace {
 
+using testing::buffered;
 using testing::drive;
 using testing::find;
-
-/// Poses wait for the last one of each `count`, and arrive a millisecond apart.
-Trajectory buffered(Trajectory trajectory, std::size_t count) {
-  const Trajectory measured = trajectory;
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    const std::size_t last = std::min(i / count * count + count - 1, measured.size() - 1);
-    trajectory[i].time_us = measured[last].time_us + static_cast<std::int64_t>(i % count) * 1000;
-  }
-  return trajectory;
-}
 
 TEST(StampsInBursts, AreNamedWithTheirStream) {
   for (const Terrain terrain : {Terrain::flat, Terrain::rough, Terrain::free})
