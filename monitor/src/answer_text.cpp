@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "egocal/microseconds.hpp"
+
 namespace egocal::monitor {
 
 std::string bounded(const std::string& text) {
@@ -175,6 +177,10 @@ std::string unanswered_text(const PairState& pair, Charset charset) {
     return "motions arrive (" + count(pair.problem.matched) + " so far), no solver has answered yet";
   if (pair.scale) return "scale " + scale_text(*pair.scale, charset).text;
   return "no motions yet: is the odometry of both sensors coming in, and pairing running?";
+}
+
+std::string answer_age(const PairState& pair, const SolverTrack& solver, Now now) {
+  return age(std::max({seconds_between(solver.at.mono_us, now.mono_us), pair.standing, pair.old}));
 }
 
 std::string standing_text(const PairState& pair) {

@@ -165,9 +165,7 @@ void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset char
     value(verify_time(answer, charset));
     value(latency(answer, charset));
     value(count(answer.pairs));
-    // age since the motions of the answer, as the same answer is sent again every second
-    value(age(std::max(seconds_between(solver.at.mono_us, now.mono_us), pair.standing)),
-          solver.silent ? Style::bad : Style::dim);
+    value(answer_age(pair, solver, now), solver.silent ? Style::bad : Style::dim);
   }
 }
 

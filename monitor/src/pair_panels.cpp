@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "answer_text.hpp"
-#include "egocal/microseconds.hpp"
 #include "panels.hpp"
 
 namespace egocal::monitor {
@@ -28,11 +27,7 @@ void draw_counts(const Pane& pane, const PairState& pair, Now now, int x, bool p
       pair.has_problem && pair.problem.left_out > 0 ? "  " + count(pair.problem.left_out) + " outliers" : "";
   const std::string rejected =
       pair.has_problem && pair.problem.rejected > 0 ? "  " + count(pair.problem.rejected) + " rejected" : "";
-  const std::string old =
-      answer ? "  " + pad_left(age(std::max(seconds_between(pair.counted_solver()->at.mono_us, now.mono_us),
-                                            pair.standing)),
-                               5)
-             : "";
+  const std::string old = answer ? "  " + pad_left(answer_age(pair, *pair.counted_solver(), now), 5) : "";
   const std::string* parts[] = {&mode, &motions, &left_out, &rejected, &old};
   for (const unsigned chosen : {0b11111u, 0b10111u, 0b10011u, 0b10010u, 0b00010u, 0b10000u}) {
     std::string text;

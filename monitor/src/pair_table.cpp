@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "answer_text.hpp"
-#include "egocal/microseconds.hpp"
 #include "panels.hpp"
 
 namespace egocal::monitor {
@@ -120,9 +119,8 @@ Cell cell_of_answer(const PairState& pair, const calibration_t& answer, PairColu
     case PairColumn::gap:
       return {compact(answer.scaled_gap, charset), answer.scaled_gap <= 1 ? Style::normal : Style::warning};
     case PairColumn::age:
-      // age since the motions of the answer, as the same answer is sent again every second
-      return {age(std::max(seconds_between(pair.counted_solver()->at.mono_us, now.mono_us), pair.standing)),
-              pair.silent || pair.standing > 0 ? Style::warning : Style::dim};
+      return {answer_age(pair, *pair.counted_solver(), now),
+              pair.silent || pair.standing > 0 || pair.old > 0 ? Style::warning : Style::dim};
     case PairColumn::solve:
       return {solve_time(answer, charset)};
     case PairColumn::verify:

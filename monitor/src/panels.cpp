@@ -98,6 +98,7 @@ void draw_processes(const Pane& pane, const Model& model, bool title, Charset ch
 }
 
 void draw_events(const Pane& pane, const Model& model, int scroll, int utc_offset_s, Charset charset) {
+  constexpr int most_of_subject = 40;  // cells: two names that are long
   const auto& events = model.events();
   if (events.empty()) {
     pane.text(2, 0, "nothing has happened yet", Style::dim);
@@ -113,11 +114,11 @@ void draw_events(const Pane& pane, const Model& model, int scroll, int utc_offse
                         : event.severity == Severity::bad     ? Style::bad
                                                               : Style::normal;
     int x = pane.text(2, i - first, clock_time(event.at.wall_us, utc_offset_s), Style::dim) + 2;
-    const int cells = pane.width() >= 90 ? 24 : 18;
+    const int cells = std::clamp(pane.width() / 4, 18, most_of_subject);
     std::string subject = event.subject;
     if (const auto at = subject.find(" -> "); at != std::string::npos)
       subject = pair_in(subject.substr(0, at), subject.substr(at + 4), cells, charset);
-    x = pane.text(x, i - first, pad_right(clean(subject, 40), cells), Style::strong) + 1;
+    x = pane.text(x, i - first, pad_right(clean(subject, most_of_subject), cells), Style::strong) + 1;
     const std::string times =
         event.repeated > 1 ? " (" + std::to_string(event.repeated) + " times)" : std::string();
     const int room = pane.width() - x - width_of(times);

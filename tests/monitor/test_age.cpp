@@ -15,6 +15,7 @@ namespace egocal::monitor::test_age {
 namespace {
 
 using ::testing::Contains;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -67,6 +68,7 @@ class AnswerAge : public ::testing::Test {
       EXPECT_THAT(shown(screen), HasSubstr("? old answer"));
       EXPECT_THAT(shown(screen), Not(HasSubstr("✓ good")));
       EXPECT_THAT(shown(screen), HasSubstr(why));
+      EXPECT_THAT(shown(screen), Not(ContainsRegex("(motions|age) +now"))) << "solvers repeat it";
     }
     EXPECT_THAT(shown(Screen::overview), HasSubstr("0 of 1 good  1 old"));
     EXPECT_THAT(pair_lines(model, Charset::ascii), HasSubstr("lidar -> camera: ? old answer: " + why));
