@@ -30,16 +30,15 @@ double median_period(std::size_t count, const Time& time, std::size_t most_perio
   return median(std::move(periods));
 }
 
+constexpr double same_time = 5e-7;  ///< half of a stamp's resolution [s]
+
 /// Where given times lie among those of a stream, looked up in order.
 class Lookup {
  public:
   Lookup(const Times& times, double max_gap) : times_(times), max_gap_(max_gap) {}
 
-  struct Found {
-    std::size_t before = 0;
-    double part = 0;
-  };
-  std::optional<Found> at(double time) {
+  /// The pose at or before a time, if the streams have one there.
+  std::optional<std::size_t> before(double time) {
     const std::size_t from = from_;
     // Streams are mostly regular: it goes on by about as much as the last time. In a long drive of which few
     // poses are looked at, this is most of the work.
@@ -48,16 +47,13 @@ class Lookup {
     usual_ = from_ - from > 1 ? from_ - from - 1 : 0;
     const double at = times_[from_];
     if (at > time) return std::nullopt;
-    const double before = time - at;
-    if (before < same_time) return Found{from_, 0};
+    if (time - at < same_time) return from_;
     if (from_ + 1 >= times_.size()) return std::nullopt;
-    const double period = times_[from_ + 1] - at;
-    if (period > max_gap_) return std::nullopt;
-    return Found{from_, before / period};
+    if (times_[from_ + 1] - at > max_gap_) return std::nullopt;
+    return from_;
   }
 
  private:
-  static constexpr double same_time = 5e-7;  ///< half of a stamp's resolution [s]
   const Times& times_;
   double max_gap_;
   std::size_t from_ = 0;
@@ -123,7 +119,13 @@ void measure_sizes(Motions& motions) {
       std::sqrt(mean_up_to(longest_of_drive(a, b), a) * mean_up_to(longest_of_drive(b, a), b));
 }
 
-PosePair Instants::interpolated(const Place& place, const PoseReading& read_key,
+double Instants::part_of_way(const Place& place) const {
+  const double at = (*other_times_)[place.before];
+  const double behind = (*key_times_)[place.key] - at;
+  return behind < same_time ? 0 : behind / ((*other_times_)[place.before + 1] - at);
+}
+
+PosePair Instants::interpolated(const Place& place, double part, const PoseReading& read_key,
                                 const PoseReading& read_other) const {
   const SynchroniserOptions& options = interpolation_;
   const auto read = [](const StampedPose& given, const PoseReading& reading) {
@@ -139,16 +141,16 @@ PosePair Instants::interpolated(const Place& place, const PoseReading& read_key,
                      [&](const StampedPose& given) { return read(given, read_other); });
       around = std::span(other_reading).first(2 * side);
     }
-    if (const auto smooth = interpolate_smoothly(around, place.part, options)) return {pose.pose, *smooth};
+    if (const auto smooth = interpolate_smoothly(around, part, options)) return {pose.pose, *smooth};
   }
   const StampedPose from = read((*others_)[place.before], read_other),
                     to = read((*others_)[place.before + 1], read_other);
-  const DualQuaternion other = interpolate(from.pose, to.pose, place.part);
+  const DualQuaternion other = interpolate(from.pose, to.pose, part);
   if (place.key == 0 || place.key + 1 == keys_->size()) return {pose.pose, other};
   const StampedPose before = read((*keys_)[place.key - 1], read_key),
                     after = read((*keys_)[place.key + 1], read_key);
   return {cut_alike({before, pose, after},
-                    {place.part, static_cast<double>(to.time_us - from.time_us), max_gap_us_}, options),
+                    {part, static_cast<double>(to.time_us - from.time_us), max_gap_us_}, options),
           other};
 }
 
@@ -156,9 +158,10 @@ PosePair Instants::at(std::size_t i, const PoseReading& read_a, const PoseReadin
   const Place& place = places_[i];
   const PoseReading& read_key = b_slower_ ? read_b : read_a;
   const PoseReading& read_other = b_slower_ ? read_a : read_b;
-  PosePair poses = place.part > 0 ? interpolated(place, read_key, read_other)
-                                  : PosePair{reread((*keys_)[place.key].pose, read_key),
-                                             reread((*others_)[place.before].pose, read_other)};
+  const double part = part_of_way(place);
+  PosePair poses = part > 0 ? interpolated(place, part, read_key, read_other)
+                            : PosePair{reread((*keys_)[place.key].pose, read_key),
+                                       reread((*others_)[place.before].pose, read_other)};
   if (b_slower_) std::swap(poses.a, poses.b);
   return poses;
 }
@@ -220,12 +223,11 @@ Instants synchronised(const Trajectory& a, const Trajectory& b, const ClockModel
   instants.others_ = b_slower ? &a : &b;
   instants.max_gap_us_ = to_microseconds(max_gap);
   const Times& key_times = instants.key_times_.emplace(b_slower ? times_b : times_a);
-  Lookup other(b_slower ? times_a : times_b, max_gap);
+  Lookup other(instants.other_times_.emplace(b_slower ? times_a : times_b), max_gap);
   instants.places_.reserve(key_times.size() / each + 1);
   for (std::size_t i = 0; i < key_times.size(); i += each)
-    if (const std::optional<Lookup::Found> found = other.at(key_times[i]))
-      instants.places_.push_back(
-          {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(found->before), found->part});
+    if (const std::optional<std::size_t> before = other.before(key_times[i]))
+      instants.places_.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(*before)});
   instants.period = median_period(
       instants.size(), [&instants](std::size_t i) { return instants.time(i); }, options.most_periods);
   return instants;

@@ -65,7 +65,7 @@ class Instants {
   /// does (pairing/synchroniser.hpp); the trajectories of synchronised() must still be there.
   PosePair at(std::size_t i, const PoseReading& read_a = {}, const PoseReading& read_b = {}) const;
   /// Whether a pose is interpolated at instant i.
-  bool between_poses(std::size_t i) const { return places_[i].part > 0; }
+  bool between_poses(std::size_t i) const { return part_of_way(places_[i]) > 0; }
   /// Whether the stream of b gives the stamps, and that of a is interpolated.
   bool b_slower() const { return b_slower_; }
   /// The same instants, interpolated through another number of poses (SynchroniserOptions::smooth_poses).
@@ -78,17 +78,20 @@ class Instants {
   friend Instants synchronised(const Trajectory&, const Trajectory&, const ClockModel&, double, std::size_t,
                                const MotionSampleOptions&);
 
+  /// Kept small, as a long drive has millions.
   struct Place {
     std::uint32_t key = 0;     ///< pose of the slower stream
     std::uint32_t before = 0;  ///< pose of the other one, at or before the instant
-    double part = 0;           ///< of the way to the next one
   };
+  /// Where the instant lies between the pose of the other stream and the next one: 0 at the pose, below 1.
+  double part_of_way(const Place& place) const;
   /// Both poses, of the slower stream first.
-  PosePair interpolated(const Place& place, const PoseReading& read_key, const PoseReading& read_other) const;
+  PosePair interpolated(const Place& place, double part, const PoseReading& read_key,
+                        const PoseReading& read_other) const;
 
   const Trajectory* keys_ = nullptr;
   const Trajectory* others_ = nullptr;
-  std::optional<Times> key_times_;
+  std::optional<Times> key_times_, other_times_;
   std::int64_t max_gap_us_ = 0;
   bool b_slower_ = false;
   SynchroniserOptions interpolation_;

@@ -38,7 +38,8 @@ Foreseen foresee_streams(const Trajectory& a, const Trajectory& b, const Pairing
     foreseen.beside_frozen = explain(foreseen.evidence, options);
   // of a million poses 8 MB that only explain() looks at
   foreseen.evidence.streams.turning_a = foreseen.evidence.streams.turning_b = {};
-  foreseen.evidence.turning_a = foreseen.evidence.turning_b = std::vector<float>();
+  for (std::vector<float>* const turning : {&foreseen.evidence.turning_a, &foreseen.evidence.turning_b})
+    *turning = std::vector<float>();
   return foreseen;
 }
 
