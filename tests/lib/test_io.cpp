@@ -115,6 +115,17 @@ TEST_F(Io, TumSurvivesARoundTrip) {
   }
 }
 
+TEST_F(Io, LinesMayEndAsThoseOfOldMacs) {
+  std::string text = "# comment\r";
+  const std::string zeros(70, '0');
+  for (int i = 0; i < 50'000; ++i) text += std::to_string(100 + i) + " 1." + zeros + " 2 3 0 0 0 1\r";
+  ASSERT_GT(text.size(), std::size_t{4} << 20) << "more than is looked through for the end of a line";
+  const Trajectory found = read_trajectory(file("b.tum", text));
+  ASSERT_EQ(found.size(), 50'000u);
+  EXPECT_EQ(found.back().time_us, 50'099'000'000);
+  expect_error("1 0 0 0 0 0 0 1\r2 0 0 zero 0 0 0 1\r", ":2: field 4 (tz): expected a number, got 'zero'");
+}
+
 TEST_F(Io, BadTrajectoriesGetOneClearLine) {
   const std::string good = "1 0 0 0 0 0 0 1\n";
   expect_error("", "holds no data");

@@ -127,6 +127,20 @@ TEST_F(Packed, DamageInTheMiddleIsARegionThatIsCounted) {
   }
 }
 
+// "holds no data" sent a user looking for what had written an empty file.
+TEST_F(Packed, WhatIsDamagedOrCutOffBeforeItsFirstRowIsRefusedForThat) {
+  for (const std::string kind : {"gz", "zst", "bz2", "lz4"}) {
+    std::string file = packed(kind, plain_);
+    const std::string beginning = file.substr(0, 18);
+    for (std::size_t i = 12; i < file.size(); ++i) file[i] = '\xa5';
+    EXPECT_THAT(refusal(file), AllOf(HasSubstr("holds no data: what is packed by"), HasSubstr("is damaged")))
+        << kind;
+    EXPECT_THAT(refusal(beginning),
+                AllOf(HasSubstr("holds no data: what is packed by"), HasSubstr("is cut off")))
+        << kind;
+  }
+}
+
 TEST_F(Packed, LossesAreThoseOfEachTimeItIsRead) {
   std::string file = packed("gz", plain_.substr(0, 1000));
   file[file.size() - 8] ^= 0x55;

@@ -139,6 +139,12 @@ void ByteSource::count_unpacking(ReadLosses& losses) {
   }
 }
 
+std::string ByteSource::why_empty() const {
+  if (!packing_ || failure_ == Failure::none) return "holds no data";
+  return "holds no data: what is packed by " + std::string(packing_->name) + " is " +
+         (failure_ == Failure::cut_off ? "cut off" : "damaged") + " before the first row";
+}
+
 /// Of the packed file, from where unpacking has ended; of a pipe what has been read.
 std::uint64_t ByteSource::packed_left() const {
   const std::uint64_t read = packed_end_ - packed_at_;

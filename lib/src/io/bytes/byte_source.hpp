@@ -42,6 +42,8 @@ class ByteSource {
   std::uint64_t plain_size() const { return unpacker_ ? 0 : size_; }
   /// At the end: what a packed file that is damaged or cut off has lost; once until rewind().
   void count_unpacking(ReadLosses& losses);
+  /// "holds no data", and why where unpacking has failed: for a file in which nothing was found.
+  std::string why_empty() const;
 
   /// Back to the first byte. Throws Error where the file is a pipe that has been read from.
   void rewind();

@@ -125,7 +125,7 @@ void ColmapImages::read(const std::string& topic, const TakePose& take) {
     lines.next(line);  // the points seen in it; the line is empty where there are none
   }
   source_->count_unpacking(losses_);
-  if (images.empty()) throw error_at(file_, 0, "", "holds no data");
+  if (images.empty()) throw error_at(file_, 0, "", source_->why_empty());
 
   const std::optional<TimeUnit> unit = unit_of(largest);
   times_in_names_ = unit.has_value();

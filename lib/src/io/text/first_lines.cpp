@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "egocal/error.hpp"
+#include "io/text/line_reader.hpp"
 
 namespace egocal::detail {
 
@@ -129,7 +130,8 @@ char separator_of(const Sniffed& sniffed, const std::string& columns) {
 }
 
 Sniffed sniff(ByteSource& source) {
-  ByteSpan bytes = source.peek(sniffed_bytes);
+  const char line_end = line_end_of(source);
+  const ByteSpan bytes = source.peek(sniffed_bytes);
   const bool all = bytes.size() < sniffed_bytes;
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (text.find('\0') != std::string_view::npos) refuse_binary(source, text);
@@ -140,7 +142,7 @@ Sniffed sniff(ByteSource& source) {
   Sniffed sniffed;
   long number = 0;
   while (!text.empty()) {
-    const std::size_t end = text.find('\n');
+    const std::size_t end = text.find(line_end);
     if (end == std::string_view::npos && !all && !sniffed.data.empty()) break;  // a part of a line
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);

@@ -111,7 +111,7 @@ bool set_matrix(TextLayout& layout, const std::vector<std::string_view>& row) {
 
 TextLayout detect_layout(ByteSource& source, const ReadOptions& options) {
   Sniffed sniffed = sniff(source);
-  if (sniffed.data.empty()) throw error_at(source.file(), 0, "", "holds no data");
+  if (sniffed.data.empty()) throw error_at(source.file(), 0, "", source.why_empty());
   TextLayout layout;
   layout.separator = separator_of(sniffed, options.columns);
   layout.decimal_comma = layout.separator != ',' && has_decimal_commas(sniffed, layout.separator);

@@ -8,6 +8,9 @@
 
 namespace egocal::detail {
 
+/// By what the lines of a text end, from its beginning on: LF (also CR LF), or CR where there is no LF.
+char line_end_of(ByteSource& source);
+
 /// Reads the lines of a text file one at a time, without copying them. A byte order mark and line ends are
 /// removed.
 class LineReader {
@@ -24,6 +27,7 @@ class LineReader {
   ByteSource& source_;
   std::size_t pending_ = 0;  ///< bytes of the line handed out last
   long number_ = 0;
+  char line_end_ = '\n';
   bool terminated_ = true;
 };
 

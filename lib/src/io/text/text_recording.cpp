@@ -163,7 +163,7 @@ void TextRecording::read(const std::string& topic, const TakePose& take) {
     }
   }
   source_->count_unpacking(losses_);
-  if (rows.count == 0) throw error_at(file_, 0, "", "holds no data");
+  if (rows.count == 0) throw error_at(file_, 0, "", source_->why_empty());
   if (!times_.empty() && times_.size() != rows.count)
     throw error_at(options_.times_file, 0, "",
                    "expected " + std::to_string(rows.count) + " times, one for each pose of " + file_ +

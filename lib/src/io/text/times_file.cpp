@@ -32,7 +32,7 @@ std::vector<std::int64_t> read_times_file(const std::string& file) {
     times.push_back(
         time_us(file, lines.number(), text, epoch_ns ? TimeUnit::nanoseconds : TimeUnit::seconds));
   }
-  if (times.empty()) throw error_at(file, 0, "", "holds no data");
+  if (times.empty()) throw error_at(file, 0, "", source.why_empty());
   return times;
 }
 
