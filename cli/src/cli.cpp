@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <new>
 #include <system_error>
 #include <utility>
 
@@ -114,6 +115,10 @@ void print_error(const std::string& name, const std::string& message) {
 }
 
 }  // namespace
+
+std::string text_of(const std::exception& error) {
+  return dynamic_cast<const std::bad_alloc*>(&error) ? "not enough memory" : error.what();
+}
 
 Option& Option::required() {
   option_->required();
@@ -290,7 +295,7 @@ std::optional<int> Program::parse(int argc, char** argv) {
     print_error(name, of_output ? output_error(error.code().message()) : error.what());
     return 1;
   } catch (const std::exception& error) {
-    print_error(name, error.what());
+    print_error(name, text_of(error));
     return 1;
   }
 }

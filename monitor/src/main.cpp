@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
   try {
     return egocal::monitor::run(options);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "egocal-monitor: %s\n", error.what());
+    std::fprintf(stderr, "egocal-monitor: %s\n", egocal::cli::text_of(error).c_str());
     return 1;
   }
 }

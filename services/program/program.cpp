@@ -47,7 +47,7 @@ int run_on_bus(const ProgramDescription& description, const BusOptions& options,
     work(loop, heartbeat, rig);
     return 0;
   } catch (const std::exception& error) {
-    std::cerr << description.name << ": " << error.what() << '\n';
+    std::cerr << description.name << ": " << cli::text_of(error) << '\n';
     return 1;
   }
 }

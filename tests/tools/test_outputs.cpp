@@ -82,6 +82,18 @@ TEST_F(Commands, OutputThatCannotBeWrittenIsAFailure) {
   EXPECT_FALSE(fs::exists(path("left.log")));
 }
 
+// It was "std::bad_alloc".
+TEST_F(Commands, MemoryThatRunsOutIsNamed) {
+  const std::string limited = "(ulimit -v 60000; exec " + egocal::paths::bin_dir() +
+                              "/egocal simulate --poses 3000000 --out " + path("big.log") + ") 2>" +
+                              path("err");
+  const int status = std::system(limited.c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_EQ(read(path("err")), "egocal: not enough memory\n");
+  EXPECT_FALSE(fs::exists(path("big.log")));
+}
+
 // The one that lost was dropped silently
 TEST_F(Commands, OutputsThatContradictEachOtherAreRefused) {
   ASSERT_EQ(egocal("simulate --poses 60 --out " + path("d")).code, 0);

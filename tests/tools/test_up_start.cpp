@@ -34,6 +34,10 @@ TEST_F(Up, SaysInOneLineWhatIsWrong) {
   refused({rig, "--output-dir", rig + "/in"});
   refused({rig, "--state", "/nonexistent/x"});
   refused({rig, "--state", path("")});
+  // pairing and the diagnosis were started again and again, without an end
+  std::ofstream(path("part.toml")) << read(rig) << "nominal = [nan, nan, 1.0]\n";
+  refused({path("part.toml"), "--log", log});
+  EXPECT_THAT(read(path("said")), HasSubstr("part.toml: pair \"lidar\", \"camera\": nominal: a part of it"));
 }
 
 // Each of them was tried again and again, without an end.

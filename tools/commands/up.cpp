@@ -127,6 +127,7 @@ bool write_reports(const UpOptions& options, const bus::Rig& rig, const std::str
 
 /// What can be known before any process is started.
 void check_before_start(const UpOptions& options, const bus::Rig& rig, const std::string& url) {
+  for (const bus::PairConfig& pair : rig.pairs) static_cast<void>(bus::drive_options(rig, pair));
   if (!options.log.empty()) require_a_pair(options.log, rig);
   if (!options.state.empty()) check_place_of_state(options.state);
   const std::optional<std::string> other = pairing_heard(url, listen_before_start);

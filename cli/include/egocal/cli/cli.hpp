@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -24,6 +25,9 @@ class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// What a failure says to people: its own text; of memory that ran out, which has none, that.
+std::string text_of(const std::exception& error);
 
 /// Ends the program with this exit code; the command has already said why.
 struct Exit {
