@@ -54,6 +54,8 @@ void Accumulation::apply(const Input& input) {
       return;
     case Input::Kind::new_session:
       return pairs_.at(input.index).reset();
+    case Input::Kind::silent:
+      return pairs_.at(input.index).release_held(motions_);
     case Input::Kind::pause:
     case Input::Kind::resume:
       return pairs_.at(input.index).pause(input.kind == Input::Kind::pause);

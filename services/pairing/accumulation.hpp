@@ -26,7 +26,8 @@ struct Input {
     pause,         ///< a pair
     resume,        ///< a pair
     nothing_sent,  ///< a channel: its sender has nothing for the first gap
-    settled        ///< a channel: nothing that its sender repeats is still in flight as a first copy
+    settled,       ///< a channel: nothing that its sender repeats is still in flight as a first copy
+    silent         ///< a pair: no pose of either sensor comes for a while
   };
   Kind kind = Kind::message;
   std::uint16_t index = 0;   ///< of the channel or pair in the rig

@@ -92,7 +92,19 @@ void PairSession::accumulate(Side side, const StampedPose& pose, std::vector<Mot
     }
   }
   const std::uint64_t solved = scale_ ? scale_->solved_motions() : 0;
-  for (const MotionPair& pair : push_pose(side, pose)) {
+  hand_out(push_pose(side, pose), out);
+  if (scale_ && scale_->solved_motions() != solved) fresh_ = true;
+}
+
+void PairSession::release_held(std::vector<MotionOut>& out) {
+  if (!can_release()) return;
+  const std::uint64_t solved = scale_ ? scale_->solved_motions() : 0;
+  hand_out(scale_ ? scale_->release_held() : drive_.release_held(), out);
+  if (scale_ && scale_->solved_motions() != solved) fresh_ = true;
+}
+
+void PairSession::hand_out(const std::vector<MotionPair>& pairs, std::vector<MotionOut>& out) {
+  for (const MotionPair& pair : pairs) {
     ++state_.seq;
     if (!scale_) fresh_ = true;
     if (scale_ && !scale_->known()) continue;  // motions of unknown length are of no use to listeners
@@ -101,7 +113,6 @@ void PairSession::accumulate(Side side, const StampedPose& pose, std::vector<Mot
     message.seq = state_.seq;
     message.stride = scale_ ? scale_->choice().stride : drive_.stride_of_pairs();
   }
-  if (scale_ && scale_->solved_motions() != solved) fresh_ = true;
 }
 
 std::optional<problem_t> PairSession::message() {

@@ -52,6 +52,11 @@ class PairSession {
   std::int64_t session() const { return state_.session; }
 
   void push(Side side, const NumberedPose& sample, std::vector<MotionOut>& out);
+  /// Pairs the poses that were held back while the clocks were compared: no pose comes for a while, and at
+  /// the end of a log none ever would. What later poses give stays the same.
+  void release_held(std::vector<MotionOut>& out);
+  /// Whether there are such poses.
+  bool can_release() const { return state_.session >= 0 && !paused() && pairing().can_release(); }
   /// The next pose begins a new session.
   void reset();
   void pause(bool paused) { state_.paused = paused; }
@@ -73,6 +78,7 @@ class PairSession {
   void timeline_restarts(Side side);
   void accumulate(Side side, const StampedPose& pose, std::vector<MotionOut>& out);
   void begin_drive();
+  void hand_out(const std::vector<MotionPair>& pairs, std::vector<MotionOut>& out);
   std::vector<MotionPair> push_pose(Side side, const StampedPose& pose);
   /// Poses, clock and synchronisation, whatever is made of them.
   const MotionPairing& pairing() const { return scale_ ? scale_->pairing() : drive_; }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <utility>
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/check.hpp"
@@ -230,10 +231,27 @@ void Pairing::watch_gaps() {
     }
     waits = waits || stream.waiting();
   }
+  release_what_silence_holds(now);
   after_batch(true);
   // a player repeats what a status reports as missing, and a status may be lost
   if (waits && patient_ && leads() && loop_.mono_us() - acknowledged_mono_us_ >= options_.ask_again_us)
     heartbeat_.publish();
+}
+
+/// While the clocks are compared poses are held back, and each pose that comes then releases a few. Where
+/// none comes, at the end of a log, they would wait for ever.
+void Pairing::release_what_silence_holds(std::int64_t now_us) {
+  const std::vector<PairSession>& pairs = std::as_const(accumulation_).pairs();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto silent = [&](const std::string& sensor) {
+      for (std::size_t k = 0; k < arrivals_.size(); ++k)
+        if (accumulation_.sensor(k).name == sensor)
+          return now_us - arrivals_[k].heard_at_us > options_.silence_us;
+      return true;
+    };
+    if (pairs[i].can_release() && silent(pairs[i].config().a) && silent(pairs[i].config().b))
+      feed({Input::Kind::silent, static_cast<std::uint16_t>(i)});
+  }
 }
 
 /// Puts the state of this process into its status: waiting, paused or running, and its error.

@@ -57,6 +57,7 @@ class Pairing {
   std::int64_t listened_us() const;
   void listen_on();
   void watch_gaps();
+  void release_what_silence_holds(std::int64_t now_us);
   void every_second();
   void obey(Verb verb, const command_t& command);
   void acknowledge();

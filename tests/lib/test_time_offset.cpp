@@ -479,6 +479,44 @@ TEST(ClockOffset, HeldPosesAreReleasedAFewAtATime) {
   EXPECT_GE(released, data.a.size() + data.b.size() - 2);
 }
 
+/// The log of a drive may end while its first poses wait. Where it goes on after all, nothing has changed.
+TEST(ClockOffset, HeldPosesAreReleasedInASilenceWithoutAnyOtherEffect) {
+  const Streams data = of_rate(50, 60);
+  ClockFollower steady{PairingOptions{}}, silent{PairingOptions{}};
+  std::vector<ReleasedPose> expected, found;
+  const auto append = [](std::vector<ReleasedPose>& all, const std::vector<ReleasedPose>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  std::size_t in_the_silence = 0;
+  for (std::size_t i = 0; i < data.a.size(); ++i) {
+    for (const Side side : {Side::a, Side::b}) {
+      const StampedPose& pose = (side == Side::a ? data.a : data.b)[i];
+      append(expected, steady.push(side, pose));
+      append(found, silent.push(side, pose));
+    }
+    if (i % 20 != 0) continue;
+    const bool can = silent.can_release();
+    const std::vector<ReleasedPose> released = silent.release_held();
+    EXPECT_EQ(can, !released.empty());
+    EXPECT_FALSE(silent.can_release());
+    in_the_silence += released.size();
+    append(found, released);
+  }
+  append(expected, steady.finish());
+  append(found, silent.finish());
+  EXPECT_GE(in_the_silence, 500u);
+  // how both streams interleave is not what pairing depends on
+  const auto a_first = [](const ReleasedPose& x, const ReleasedPose& y) { return x.side < y.side; };
+  std::stable_sort(expected.begin(), expected.end(), a_first);
+  std::stable_sort(found.begin(), found.end(), a_first);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    ASSERT_EQ(found[k].side, expected[k].side) << k;
+    ASSERT_EQ(found[k].pose.time_us, expected[k].pose.time_us) << k;
+    ASSERT_EQ(found[k].segment, expected[k].segment) << k;
+  }
+}
+
 /// To the pose: each push releases the same poses as without the interruptions.
 TEST(ClockOffset, ARestartInTheMiddleOfAnEstimateDelaysNothing) {
   const Streams data = of_rate(10, 50);

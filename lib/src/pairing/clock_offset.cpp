@@ -91,6 +91,21 @@ std::vector<ReleasedPose> ClockFollower::push(Side side, const StampedPose& pose
   return released;
 }
 
+/// The clock of a pose is the one in force up to here, whatever comes later: the next estimate counts after
+/// it.
+bool ClockFollower::can_release() const {
+  if (!state_.in_force) return false;
+  const std::int64_t until_us = std::max(boundary_us(), common_us());
+  return std::any_of(state_.streams.begin(), state_.streams.end(),
+                     [&](const ClockState::Stream& stream) { return may_be_used(stream, until_us); });
+}
+
+std::vector<ReleasedPose> ClockFollower::release_held() {
+  std::vector<ReleasedPose> released;
+  if (can_release()) release(std::max(boundary_us(), common_us()), without_limit, released);
+  return released;
+}
+
 std::vector<ReleasedPose> ClockFollower::finish() {
   std::vector<ReleasedPose> released;
   while (both_reached(boundary_us())) {
@@ -233,11 +248,16 @@ void ClockFollower::take_force(const TimeOffset& offset, std::int64_t worked_us)
   ++state_.changes;
 }
 
+/// Whether the first of its held poses lies up to a time since the begin.
+bool ClockFollower::may_be_used(const ClockState::Stream& stream, std::int64_t until_us) const {
+  return !stream.held.empty() && stream.held.front().time_us - *stream.begin_us <= until_us;
+}
+
 /// Releases held poses up to a time since the begin, in the order of time on the clock of a.
 void ClockFollower::release(std::int64_t until_us, std::size_t most, std::vector<ReleasedPose>& released) {
   const auto next = [&](Side side) -> std::optional<StampedPose> {
     const ClockState::Stream& stream = state_.streams[side == Side::a ? 0 : 1];
-    if (stream.held.empty() || stream.held.front().time_us - *stream.begin_us > until_us) return std::nullopt;
+    if (!may_be_used(stream, until_us)) return std::nullopt;
     StampedPose pose = stream.held.front();
     if (side == Side::b) pose.time_us = on_clock_of_a(*state_.in_force, pose.time_us);
     return pose;

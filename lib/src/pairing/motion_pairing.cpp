@@ -61,6 +61,14 @@ std::vector<MotionPair> MotionPairing::push(Side side, const StampedPose& given)
   return pairs;
 }
 
+std::vector<MotionPair> MotionPairing::release_held() {
+  std::vector<MotionPair> pairs;
+  if (!can_release()) return pairs;
+  take(clock_.release_held(), pairs);
+  if (settles_) settle();
+  return pairs;
+}
+
 std::vector<MotionPair> MotionPairing::finish() {
   std::vector<MotionPair> pairs;
   if (options_.track_time_offset) take(clock_.finish(), pairs);

@@ -67,17 +67,22 @@ bool ScaleCourse::changes() const {
 
 ScaleCourse find_scale_course(const Trajectory& a, const Trajectory& b, const PairingOptions& given,
                               const ScaleSolution& solution, Side side, const ScaleCourseOptions& options) {
-  ScaleCourse unchanged = constant(solution.scale);
-  ScaleCourse course = unchanged;
+  if (!solution.observable) return constant(solution.scale);
   PairingOptions pairing = given;
-  if (!solution.observable) return unchanged;
   // the height of the scaled sensor's plane is not to be scaled
   (side == Side::a ? pairing.plane_a : pairing.plane_b).distance = 0;
-  const std::vector<MotionPair> pairs = detail::unjudged_motions(a, b, pairing, options.motion);
-  if (pairs.size() < options.least_blocks * options.least_block) return unchanged;
+  return find_scale_course(detail::unjudged_motions(a, b, pairing, options.motion), pairing.mode, solution,
+                           side, options);
+}
+
+ScaleCourse find_scale_course(std::span<const MotionPair> pairs, Mode mode, const ScaleSolution& solution,
+                              Side side, const ScaleCourseOptions& options) {
+  ScaleCourse unchanged = constant(solution.scale);
+  ScaleCourse course = unchanged;
+  if (!solution.observable || pairs.size() < options.least_blocks * options.least_block) return unchanged;
   DriveScaleOptions scale;
   scale.scale.side = side;
-  scale.scale.mode = pairing.mode;
+  scale.scale.mode = mode;
   scale.scale.balance = solution.balance;
   DualQuaternion q = solution.q;
   for (int round = 0; round < options.rounds; ++round) {
@@ -107,6 +112,7 @@ ScaleCourse find_scale_course(const Trajectory& a, const Trajectory& b, const Pa
 
 Trajectory scaled(const Trajectory& trajectory, const ScaleCourse& course) {
   Trajectory result;
+  result.reserve(trajectory.size());
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     if (i == 0) {
       result.push_back(trajectory[0]);

@@ -64,10 +64,14 @@ ScaleDriveState ScaleDrive::state() const {
 }
 
 std::vector<MotionPair> ScaleDrive::push(Side side, const StampedPose& pose) {
-  std::vector<MotionPair> completed;
   if (!options_.pairing.track_time_offset && plausible_relative_time(pose.time_us))
     interpolation_.stamp(side, on_clock_of_a(side, pose.time_us));
-  for (const MotionPair& step : pairing_.push(side, pose)) {
+  return taken(pairing_.push(side, pose));
+}
+
+std::vector<MotionPair> ScaleDrive::taken(const std::vector<MotionPair>& steps) {
+  std::vector<MotionPair> completed;
+  for (const MotionPair& step : steps) {
     interpolation_.step(step, pairing_.state().synchroniser.keys.value_or(Side::b));
     const std::size_t before = completed.size();
     grow(step, completed);

@@ -44,9 +44,9 @@ struct ReleasedPose {
 /// minute. Each estimate is worked out over the poses that follow, a bounded share at each, so that none
 /// waits for more than a fraction of a millisecond of work. It comes into force once both streams have gone
 /// on by as many poses as it has shares, and by `delay` at least: after 2 s at 100 Hz, 5 s at 10 Hz. The
-/// poses held until the first one are then released a few at a time. The result depends on the stamps of both
-/// streams, not on how they interleave nor on how fast the machine is; until the held poses are released,
-/// only after finish().
+/// poses held until the first one are then released a few at a time, at each pose that follows. The result
+/// depends on the stamps of both streams, not on how they interleave nor on how fast the machine is; until
+/// the held poses are released, only after release_held() or finish().
 class ClockFollower {
  public:
   /// Uses max_gap and the options of its own stage.
@@ -59,6 +59,11 @@ class ClockFollower {
 
   /// Takes the next pose of one stream. Returns the poses that may be used now, in the order of time.
   std::vector<ReleasedPose> push(Side side, const StampedPose& pose);
+  /// No pose comes for a while. Returns the held poses that may be used, all at once. What the poses after
+  /// them give stays the same, to the bit.
+  std::vector<ReleasedPose> release_held();
+  /// Whether release_held() has any.
+  bool can_release() const;
   /// No more poses will come. Works out the estimate that is due, and returns all poses that may be used.
   std::vector<ReleasedPose> finish();
   /// What is added to the stamps of b now [s]; empty while it is looked for.
@@ -77,6 +82,7 @@ class ClockFollower {
   void take_force(const TimeOffset& offset, std::int64_t worked_us);
   void release(std::int64_t until_us, std::size_t most, std::vector<ReleasedPose>& released);
   void forget();
+  bool may_be_used(const ClockState::Stream& stream, std::int64_t until_us) const;
   std::int64_t common_us() const;
   std::int64_t boundary_us() const;
 

@@ -55,6 +55,12 @@ class MotionPairing {
   std::vector<SumsStep> take_deferred() { return accumulator_.take_deferred(); }
   void add_to_sums(const std::vector<SumsStep>& steps) { accumulator_.add_to_sums(steps); }
 
+  /// No pose comes for a while: pairs the poses that were held back while the clocks were compared. What
+  /// later poses give stays the same.
+  std::vector<MotionPair> release_held();
+  /// Whether there are such poses.
+  bool can_release() const { return options_.track_time_offset && clock_.can_release(); }
+
   /// No more poses will come: pairs what a drive too short to show its slower stream has held back.
   std::vector<MotionPair> finish();
 

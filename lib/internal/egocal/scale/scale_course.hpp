@@ -57,6 +57,12 @@ ScaleCourse find_scale_course(const Trajectory& a, const Trajectory& b, const Pa
                               const ScaleSolution& solution, Side side,
                               const ScaleCourseOptions& options = {});
 
+/// The same from motions of the drive, in the order of time; in planar mode as seen from the planes, that of
+/// the scaled sensor through its origin. A long drive needs not all of its motions: a change is placed
+/// between two of them.
+ScaleCourse find_scale_course(std::span<const MotionPair> pairs, Mode mode, const ScaleSolution& solution,
+                              Side side, const ScaleCourseOptions& options = {});
+
 /// The trajectory with the translation of each step multiplied by the scale at its time.
 Trajectory scaled(const Trajectory& trajectory, const ScaleCourse& course);
 

@@ -84,6 +84,8 @@ class ScaleDrive {
 
   /// Takes the next pose of one stream. Returns the motions that it completed, at the scale in force.
   std::vector<MotionPair> push(Side side, const StampedPose& pose);
+  /// As MotionPairing::release_held().
+  std::vector<MotionPair> release_held() { return taken(pairing_.release_held()); }
 
   /// The newest solution's, for others to solve; empty before the first one.
   const std::optional<ScaleProblem>& scale_problem() const { return state_.problem; }
@@ -104,6 +106,7 @@ class ScaleDrive {
 
  private:
   std::int64_t on_clock_of_a(Side side, std::int64_t time_us) const;
+  std::vector<MotionPair> taken(const std::vector<MotionPair>& steps);
   void grow(const MotionPair& step, std::vector<MotionPair>& completed);
   void commit_old();
   void join_old_blocks();

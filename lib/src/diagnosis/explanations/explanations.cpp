@@ -132,19 +132,39 @@ bool turns_within_tolerance(const Explanation& explanation, const DiagnosisOptio
          turns_little(explanation.read_b);
 }
 
-/// What holds in a part of the drive only cures nothing by itself: a file whose convention changes on its
-/// way.
-void name_part(const Explained& final, std::vector<Finding>& findings) {
+/// The part of the drive that an explanation leaves out: a file whose convention changes on its way.
+std::optional<UnexplainedPart> left_out_by(const Explained& final) {
   LargeMoveOptions shortest;
   shortest.least_part = 1.0 / 6;  // two windows: every sixth of the drive was asked for by nothing else
-  const std::optional<UnexplainedPart> part = unexplained_part(final.motions, final.fit.T, shortest);
-  if (!part) return;
+  return unexplained_part(final.motions, final.fit.T, shortest);
+}
+
+/// The motions outside of a part of the drive, with the extrinsic that suits them best. Blocks are as long as
+/// before.
+Explained without_part(const Explained& whole, const UnexplainedPart& part, const DiagnosisOptions& options) {
+  Explained rest{whole.motions, {}};
+  std::erase_if(rest.motions.all,
+                [&](const Motion& motion) { return motion.time >= part.begin && motion.time < part.end; });
+  if (!rest.motions.all.empty()) rest.fit = robust_fit(rest.motions, options.fit);
+  return rest;
+}
+
+/// Whether what holds without a part fits the rest better than the streams as given do. Otherwise it only
+/// suits something in that part, which is wrong by itself.
+bool explains_the_rest(const Explained& given, const Explained& final, const UnexplainedPart& part,
+                       const DiagnosisOptions& options) {
+  return better(compare(without_part(given, part, options), without_part(final, part, options)),
+                options.least_gain, options);
+}
+
+/// What holds in a part of the drive only cures nothing by itself.
+void name_part(const UnexplainedPart& part, std::vector<Finding>& findings) {
   for (Finding& finding : findings) {
     FindingWords words = finding.words;
     words.evidence += format(" This explains the drive without the part from %.0f to %.0f s after the start.",
-                             part->begin, part->end);
+                             part.begin, part.end);
     words.scope =
-        format("Calibrate the drive from %.0f to %.0f s separately; of the rest: ", part->begin, part->end);
+        format("Calibrate the drive from %.0f to %.0f s separately; of the rest: ", part.begin, part.end);
     say(finding, std::move(words));
   }
 }
@@ -215,6 +235,9 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
       findings.push_back(worded_reading(std::move(*both), {}, {}));
     return findings;
   }
+  const std::optional<UnexplainedPart> left_out = left_out_by(final);
+  const bool as_given = best.code.empty() && best.scale == 1 && clocks.empty();
+  if (!as_given && left_out && !explains_the_rest(given, final, *left_out, options)) return findings;
   const Comparison overall = compare(given, final);
   const bool certain = overall.gain >= options.gain;
   // of which stream the axes are wrong may be open, not that they are
@@ -244,7 +267,7 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
     finding.value = drift ? clock.clock.rate : clock.clock.offset;
     add(worded_clock(std::move(finding), clock.clock));
   }
-  name_part(final, findings);
+  if (left_out) name_part(*left_out, findings);
   if (!findings.empty()) return findings;
 
   // the same mistake in both files may leave nearly no trace: all that fits is named

@@ -17,6 +17,7 @@
 #include "diagnosis/explanations/replacing.hpp"
 #include "diagnosis/explanations/times/clock_check.hpp"
 #include "diagnosis/explanations/times/clock_step.hpp"
+#include "diagnosis/explanations/times/early_rotations.hpp"
 #include "diagnosis/explanations/times/held_stream.hpp"
 #include "diagnosis/explanations/times/late_positions.hpp"
 #include "diagnosis/explanations/times/late_rotations.hpp"
@@ -164,8 +165,10 @@ void add_what_is_beside(const Foreseen& foreseen, const DiagnosisOptions& option
   add_impossible_pace(evidence, options, result.findings);
   look_at_times(foreseen, answered, result);
   name_small_scale(evidence, options, answered, result);
-  if (pairing.mode != Mode::planar)
+  if (pairing.mode != Mode::planar) {
     name_late_rotations(evidence, pairing.max_gap, options, wrong_stream, result.findings);
+    name_early_rotations(evidence, options, answered, result);
+  }
   name_askew_rotations(evidence, answered, options, result.findings);
   add_interpolated_streams(foreseen, options, answered, result);
   name_held_streams(evidence, pairing.max_gap, options, result.findings);

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
 #include "diagnosis/explanations/lengths/part_of_other_scale.hpp"
+#include "diagnosis/explanations/lengths/spread_motions.hpp"
 #include "diagnosis/explanations/lengths/wandering_scale.hpp"
 #include "diagnosis/motions/axes.hpp"
 #include "diagnosis/motions/standing_still.hpp"
@@ -37,21 +39,35 @@ Trajectory between(const Trajectory& trajectory, std::int64_t begin_us, std::int
   return result;
 }
 
-void add_scale_of_b(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
-                    ScaleGuesses& guesses) {
+std::optional<ScaleSolution> scale_of_all(const Trajectory& a, const Trajectory& b,
+                                          const PairingOptions& pairing) {
   DriveScaleOptions options;
   options.scale.side = Side::b;
-  if (const std::optional<ScaleSolution> scale = estimate_scale(a, b, pairing, options))
-    guesses.push_back(*scale);
+  return estimate_scale(a, b, pairing, options);
+}
+
+/// Motions of a part of the time; they are in its order.
+std::span<const MotionPair> between(std::span<const MotionPair> motions, std::int64_t begin_us,
+                                    std::int64_t end_us) {
+  const auto first = std::partition_point(
+      motions.begin(), motions.end(), [&](const MotionPair& motion) { return motion.begin_us < begin_us; });
+  const auto last = std::partition_point(first, motions.end(),
+                                         [&](const MotionPair& motion) { return motion.end_us < end_us; });
+  return {first, last};
 }
 
 /// First guesses: one scale for the whole drive, and that of each part between the moves. Where a machine
 /// mostly turns in place, a scale that changes spoils the extrinsic of the whole drive so far that its course
 /// is not found from there; a part before or after the change has the right one.
+/// motions: of a long drive; empty: all of them are looked at.
 ScaleGuesses scales_of_b(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
-                         const std::vector<Finding>& moves) {
+                         std::span<const MotionPair> motions, const std::vector<Finding>& moves) {
   ScaleGuesses guesses;
-  add_scale_of_b(a, b, pairing, guesses);
+  const auto add = [&](const std::optional<ScaleSolution>& scale) {
+    if (scale) guesses.push_back(*scale);
+  };
+  const bool all = motions.empty();
+  add(all ? scale_of_all(a, b, pairing) : scale_of_b(motions, pairing.mode));
   if (moves.empty()) return guesses;
   const std::int64_t offset_us = to_microseconds(pairing.time_offset);
   std::int64_t from = a.front().time_us;
@@ -61,7 +77,8 @@ ScaleGuesses scales_of_b(const Trajectory& a, const Trajectory& b, const Pairing
       if (!moves[k].time) continue;
       to = a.front().time_us + to_microseconds(*moves[k].time);
     }
-    add_scale_of_b(between(a, from, to), between(b, from - offset_us, to - offset_us), pairing, guesses);
+    add(all ? scale_of_all(between(a, from, to), between(b, from - offset_us, to - offset_us), pairing)
+            : scale_of_b(between(motions, from, to), pairing.mode));
     from = to;
   }
   return guesses;
@@ -101,15 +118,14 @@ bool changes_while_moving(const ScaleCourse& course, const Explained& given, std
   });
 }
 
-/// With the scale of b as it is found from a first guess; empty where it does not change, or where a mount
-/// still moves. moved: whether one seems to move as given; where none does, the scales may leave small moves,
-/// as each is wrong by a little, but must explain more than those.
+/// With a course of the scale of b; empty where it does not change, or where a mount still moves. moved:
+/// whether one seems to move as given; where none does, the scales may leave small moves, as each is wrong by
+/// a little, but must explain more than those.
 std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evidence& evidence,
-                                      const Answered& answered, const ScaleSolution& guess, bool moved,
+                                      const Answered& answered, const ScaleCourse& course, bool moved,
                                       const DiagnosisOptions& options) {
   const Trajectory& a = evidence.streams.a;
   const Trajectory& b = evidence.streams.b;
-  const ScaleCourse course = find_scale_course(a, b, pairing, guess, Side::b);
   if (!course.changes() || !changes_while_moving(course, evidence.given.explained, a.front().time_us))
     return std::nullopt;
   const Trajectory followed = scaled(b, course);
@@ -145,10 +161,16 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
 std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evidence& evidence,
                                       const Answered& answered, const DiagnosisOptions& options,
                                       const std::vector<Finding>& moves) {
+  const Trajectory &a = evidence.streams.a, &b = evidence.streams.b;
+  std::vector<MotionPair> motions;  // all those of a long drive would take longer than all the rest
+  if (is_long(evidence.instants))
+    motions = spread_motions(evidence.instants, a.front().time_us, pairing, options.motions);
   std::optional<Finding> best;
-  for (const ScaleSolution& guess : scales_of_b(evidence.streams.a, evidence.streams.b, pairing, moves)) {
+  for (const ScaleSolution& guess : scales_of_b(a, b, pairing, motions, moves)) {
+    const ScaleCourse course = motions.empty() ? find_scale_course(a, b, pairing, guess, Side::b)
+                                               : find_scale_course(motions, pairing.mode, guess, Side::b);
     std::optional<Finding> found =
-        changing_scale(pairing, evidence, answered, guess, !moves.empty(), options);
+        changing_scale(pairing, evidence, answered, course, !moves.empty(), options);
     if (found && (!best || found->improvement > best->improvement)) best = std::move(found);
   }
   return best;
@@ -169,13 +191,30 @@ bool explained_by_reading(const PoseReading& of_both, const Evidence& evidence,
   return compare(parts, both).gain > -options.gain;
 }
 
+/// One extrinsic for each part explains the motions of the drive clearly better than this course of the scale
+/// of b does: a copy of the poses at its scales would show the mount that moves as well.
+bool moves_beside(const ScaleCourse& course, const Evidence& evidence, const std::vector<Finding>& moves,
+                  const DiagnosisOptions& options) {
+  const Motions& given = evidence.given.explained.motions;
+  const std::int64_t origin_us = evidence.streams.a.front().time_us;
+  Explained followed{given, {}};
+  for (Motion& motion : followed.motions.all) {
+    const double scale = course.at(origin_us + to_microseconds(motion.time));
+    motion.t_b *= scale;
+    motion.b.dual *= scale;
+  }
+  followed.fit = robust_fit(followed.motions, options.fit);
+  return better(compare(followed, in_parts(given, moves, options)), options.gain, options);
+}
+
 /// No mount moves at a scale that wanders by as little as those of odometries do.
 bool moves_with_the_scale(const PairingOptions& pairing, const Evidence& evidence, const Answered& answered,
                           const std::vector<Finding>& moves, const DiagnosisOptions& options) {
   const Trajectory &a = evidence.streams.a, &b = evidence.streams.b;
   const std::optional<ScaleCourse> course =
       wandering_scale(evidence.given.explained.motions, a.front().time_us, moves, options);
-  if (!course) return false;
+  if (!course || (is_long(evidence.instants) && moves_beside(*course, evidence, moves, options)))
+    return false;
   const Trajectory followed = scaled(b, *course);
   const Instants instants = synchronised(a, followed, evidence.clock, pairing.max_gap, 1, options.motions);
   return moved_mount(instants, answered, options).findings.empty() &&

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Rotations that belong to other times than the positions of the same stream, shown by few turns.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "../support/findings.hpp"
+#include "diagnosis/explanations/times/early_rotations.hpp"
+#include "egocal/calibrate.hpp"
+#include "egocal/evaluation/errors.hpp"
+
+namespace egocal::test_early_rotations {
+namespace {
+
+using testing::find;
+
+/// A minute on rough ground, at speeds that vary.
+testing::Streams drive_of_speeds(std::uint64_t seed) {
+  SimulationOptions options;
+  options.terrain = Terrain::rough;
+  options.poses = 601;
+  options.relative_noise = 0.003;
+  options.speed_variation = 0.7;
+  options.seed = seed;
+  return testing::simulated_drive(options);
+}
+
+/// b on a part of the vehicle that turns about the vertical by `seconds` times the turning rate.
+Trajectory on_a_steered_part(const Trajectory& poses, double seconds) {
+  const DualQuaternion mounting = to_dual_quaternion(testing::T_vehicle_b);
+  Trajectory result = poses;
+  for (std::size_t i = 1; i + 1 < poses.size(); ++i) {
+    const DualQuaternion before = poses[i - 1].pose * conjugate(mounting),
+                         after = poses[i + 1].pose * conjugate(mounting);
+    const double time = 1e-6 * static_cast<double>(poses[i + 1].time_us - poses[i - 1].time_us);
+    const double rate = rotation_log(to_pose(conjugate(before) * after).rotation).z() / time;
+    const DualQuaternion aside =
+        to_dual_quaternion(Pose{rotation_exp({0, 0, seconds * rate}), Eigen::Vector3d::Zero()});
+    result[i].pose = canonical_sign(normalized(poses[i].pose * conjugate(mounting) * aside * mounting));
+  }
+  return result;
+}
+
+detail::EarlyRotations seen(const testing::Streams& streams, Side side) {
+  const DiagnosisOptions options;
+  const detail::Evidence evidence = detail::gather(streams.a, streams.b, {}, 0.5, options);
+  return detail::early_rotations(evidence.instants, evidence.given.explained, side)
+      .value_or(detail::EarlyRotations{});
+}
+
+TEST(EarlyRotations, AreNotThoseOfRightStreams) {
+  for (const Terrain terrain : {Terrain::rough, Terrain::free})
+    for (std::uint64_t seed = 1; seed <= 3; ++seed)
+      for (const Side side : {Side::a, Side::b})
+        EXPECT_LT(seen(testing::drive(terrain, seed), side).sigmas(), 3.5) << seed;
+}
+
+TEST(EarlyRotations, HaveTheTimeOfAPartThatIsSteered) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    testing::Streams streams = drive_of_speeds(seed);
+    EXPECT_LT(seen(streams, Side::b).sigmas(), 3.5) << seed;
+    streams.b = on_a_steered_part(streams.b, 0.2);
+    const detail::EarlyRotations found = seen(streams, Side::b);
+    EXPECT_NEAR(found.seconds, 0.2, 0.06) << seed;
+    EXPECT_GT(found.sigmas(), 3.5) << seed;
+    EXPECT_LT(extrinsic_error(streams.T, found.T_a_b).translation,
+              0.5 * extrinsic_error(streams.T, found.T_a_b_as_given).translation)
+        << seed;
+  }
+}
+
+TEST(EarlyRotations, AreNotAClockThatDiffers) {
+  testing::Streams streams = drive_of_speeds(1);
+  for (StampedPose& pose : streams.b) pose.time_us += 50'000;
+  const detail::EarlyRotations found = seen(streams, Side::b);
+  EXPECT_GT(std::abs(found.of_rotations), 0.03);
+  EXPECT_LT(std::abs(found.seconds), 0.5 * std::abs(found.of_rotations));
+}
+
+// Which stream it is, and whether its mounting or a filter turns it, the motions cannot tell.
+TEST(EarlyRotations, AreNamedWithBothReadings) {
+  for (const std::uint64_t seed : {1, 3}) {
+    testing::Streams streams = drive_of_speeds(seed);
+    EXPECT_EQ(find(calibrate(streams.a, streams.b), "late_positions_b"), nullptr);
+    streams.b = on_a_steered_part(streams.b, 0.2);
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    EXPECT_GE(calibration.verdict, Verdict::doubtful) << calibration.reason;
+    const Finding* finding = find(calibration, "late_positions_b");
+    ASSERT_NE(finding, nullptr) << calibration.reason;
+    EXPECT_NE(find(calibration, "mount_moved"), nullptr) << calibration.reason;
+  }
+}
+
+}  // namespace
+}  // namespace egocal::test_early_rotations
