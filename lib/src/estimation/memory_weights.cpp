@@ -32,6 +32,33 @@ double fitted_lambda(const StrideLadder& ladder, const std::vector<double>& vari
   return half - std::sqrt(half * half - 1);
 }
 
+/// Of each stride, the variances of translations without what rotations cause.
+struct OwnTranslations {
+  std::vector<double> variances;  ///< [m^2]
+  std::vector<double> parts;      ///< of the whole variance
+  std::vector<double> counts;     ///< motions, by what they say of these variances
+};
+
+/// An error of rotation (real rows, |e|^2) moves the dual rows of a motion of
+/// length |t| by |t|^2 / 4 |e|^2, (15). Long motions show it even where noise on
+/// poses alone makes rotations of all strides alike. It is no noise of motions.
+OwnTranslations own_translations(const StrideLadder& ladder, const StrideResiduals& residual) {
+  OwnTranslations own;
+  for (std::size_t i = 0; i < ladder.size(); ++i) {
+    const Statistics& motions = ladder.sums[i].motions;
+    // the trace is |t_a|^2 + |t_b|^2 a motion, less what their screws share
+    const double squared_half_length =
+        motions.weight > 0 ? motions.dual_rows.topLeftCorner<4, 4>().trace() / (8 * motions.weight) : 0;
+    const double all = residual.translation[i], of_rotations = residual.rotation[i] * squared_half_length;
+    const double part = all > 0 ? std::max(ladder.options.least_own_part, 1 - of_rotations / all) : 1;
+    own.variances.push_back(part * all);
+    own.parts.push_back(part);
+    // a difference scatters as what it is a part of does
+    own.counts.push_back(ladder.motions[i] * part * part);
+  }
+  return own;
+}
+
 /// Per motion, before rotation and translation are balanced. Strides whose
 /// motions are lost in the rounding of the others are skipped: most of them,
 /// where noise adds up from step to step.
@@ -105,8 +132,10 @@ std::optional<WeightChoice> weights_by_residuals(const StrideLadder& ladder, Mod
   DualQuaternion q = minimiser(weighted_sum(ladder, weights), mode);
   for (int round = 0; round < options.rounds; ++round) {
     const StrideResiduals residual = residuals(ladder, q);
+    const OwnTranslations own = own_translations(ladder, residual);
     weights = {shape(ladder, fitted_lambda(ladder, residual.rotation, ladder.turns), ladder.turns),
-               shape(ladder, fitted_lambda(ladder, residual.translation, ladder.motions), ladder.motions)};
+               shape(ladder, fitted_lambda(ladder, own.variances, own.counts), ladder.motions)};
+    for (std::size_t i = 0; i < ladder.size(); ++i) weights.translation[i] *= own.parts[i];
     weights = balanced(ladder, std::move(weights), residual);
     q = minimiser(weighted_sum(ladder, weights), mode);
   }
