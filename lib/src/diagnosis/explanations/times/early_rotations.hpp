@@ -14,8 +14,9 @@
 
 namespace egocal::detail {
 
-/// Study: docs/trust_rules.md, "Rotations of another time". Of 45 clean drives of 14 machines the largest number of
-/// standard deviations is 2.6, of the real ones 3.0; of eight trams with a sensor on a bogie 3.9 to 14.
+/// Study: docs/trust_rules.md, "Rotations of another time". Of 45 clean drives of 14 machines the largest
+/// number of standard deviations is 2.6, of the real ones 3.0; of eight trams with a sensor on a bogie 3.9
+/// to 14.
 struct EarlyRotationsOptions {
   TwoTimesOptions times;
   std::size_t least = 60;  ///< fewer do not show eight numbers and their scatter
