@@ -112,6 +112,7 @@ TEST_F(Commands, ReportAndBaselinesUseTheStreamsAsTheyAreSolved) {
   }
   EXPECT_THAT(read(path("scaled.html")), HasSubstr("times the lengths of b, estimated and proven"));
   EXPECT_EQ(egocal("align " + path("scaled/lidar.tum") + " " + path("scaled/camera.tum")).code, 3);
+  expect_refusal(egocal("align one"), 2, "expected two trajectory files A and B\n");  // no --pairs
   const Outcome aligned = egocal("align --json " + scaled);
   EXPECT_EQ(aligned.code, 0);
   EXPECT_LT(json::parse(aligned.out)["rms_translation_m"].get<double>(), 1);

@@ -107,8 +107,10 @@ SolveRequest understood(const RequestOptions& options) {
   result.append = options.append;
   const bool trajectories = options.source.pairs.empty();
   if (trajectories && (options.source.a.empty() || options.source.b.empty()))
-    throw UsageError(options.source.log.empty() ? "expected two trajectory files A and B, or --pairs FILE"
-                                                : "expected two channel names A and B of the log");
+    throw UsageError(!options.source.log.empty() ? "expected two channel names A and B of the log"
+                     : options.sources == Sources::all
+                         ? "expected two trajectory files A and B, or --pairs FILE"
+                         : "expected two trajectory files A and B");
   if (!trajectories && (!options.source.a.empty() || !options.source.log.empty()))
     throw UsageError("--pairs: takes the place of A and B and of --log");
   if (!trajectories) refuse_options_of_streams(options);
@@ -167,6 +169,7 @@ SolveRequest understood(const RequestOptions& options) {
 }
 
 void add_request_options(cli::App command, RequestOptions& options, Sources sources) {
+  options.sources = sources;
   command.add_option(
       "A", options.source.a,
       "trajectory of sensor a: FILE or FILE:TOPIC of a ROS bag, MCAP, LCM log, TUM, KITTI, EuRoC or "

@@ -11,6 +11,12 @@
 
 namespace egocal::tools {
 
+/// What a command can solve.
+enum class Sources {
+  all,
+  two_trajectories,  ///< no --pairs, --append and --samples
+};
+
 /// Which motions to solve and how, as typed; empty means not given. What `egocal solve` and `egocal report`
 /// share.
 struct RequestOptions {
@@ -24,13 +30,8 @@ struct RequestOptions {
   std::string order_a, order_b, goal;
   bool invert_a = false, invert_b = false;
   bool samples = false, eye_in_hand = false, eye_to_hand = false;
+  Sources sources = Sources::all;   ///< that the command takes
   std::vector<std::string> append;  ///< further drives: files of A and B alternately
-};
-
-/// What a command can solve.
-enum class Sources {
-  all,
-  two_trajectories,  ///< no --pairs, --append and --samples
 };
 
 /// Adds A, B and the options of the struct for these sources. It must exist until the command has run.
