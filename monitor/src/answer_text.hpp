@@ -43,7 +43,7 @@ std::string latency(const calibration_t& answer, Charset charset);
 std::string solve_time(const calibration_t& answer, Charset charset);
 std::string verify_time(const calibration_t& answer, Charset charset);
 
-/// Since when no motion is in the answer of a solver that is heard: "12 s". Solvers repeat the same answer
+/// How long ago the newest motion of a solver's answer came: "12 s". Solvers repeat the same answer
 /// every second.
 std::string answer_age(const PairState& pair, const SolverTrack& solver, Now now);
 

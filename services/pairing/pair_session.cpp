@@ -98,6 +98,7 @@ void PairSession::accumulate(Side side, const StampedPose& pose, std::vector<Mot
 
 void PairSession::release_held(std::vector<MotionOut>& out) {
   if (!can_release()) return;
+  received_mono_us_ = 0;  // they came before the silence, which is no latency of a solver
   const std::uint64_t solved = scale_ ? scale_->solved_motions() : 0;
   hand_out(scale_ ? scale_->release_held() : drive_.release_held(), out);
   if (scale_ && scale_->solved_motions() != solved) fresh_ = true;

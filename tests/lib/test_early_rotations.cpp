@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "../support/findings.hpp"
@@ -47,8 +48,10 @@ Trajectory on_a_steered_part(const Trajectory& poses, double seconds) {
 detail::EarlyRotations seen(const testing::Streams& streams, Side side) {
   const DiagnosisOptions options;
   const detail::Evidence evidence = detail::gather(streams.a, streams.b, {}, 0.5, options);
-  return detail::early_rotations(evidence.instants, evidence.given.explained, side)
-      .value_or(detail::EarlyRotations{});
+  const std::optional<detail::EarlyRotations> found =
+      detail::early_rotations(evidence.instants, evidence.given.explained, side);
+  EXPECT_TRUE(found);
+  return found.value_or(detail::EarlyRotations{});
 }
 
 TEST(EarlyRotations, AreNotThoseOfRightStreams) {

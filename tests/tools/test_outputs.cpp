@@ -84,7 +84,7 @@ TEST_F(Commands, OutputThatCannotBeWrittenIsAFailure) {
 
 // It was "std::bad_alloc".
 TEST_F(Commands, MemoryThatRunsOutIsNamed) {
-  const std::string limited = "(ulimit -v 60000; exec " + egocal::paths::bin_dir() +
+  const std::string limited = "(ulimit -v 200000; exec " + egocal::paths::bin_dir() +
                               "/egocal simulate --poses 3000000 --out " + path("big.log") + ") 2>" +
                               path("err");
   const int status = std::system(limited.c_str());

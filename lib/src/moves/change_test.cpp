@@ -151,7 +151,7 @@ ChangeTest test_change(Blocks blocks, std::size_t least_side, const ChangeTestOp
 
   const Part after{test.split, count};
   const Division d = divide(blocks, after, options);
-  const Evidence found = evidence(blocks, after, d, whiten);
+  const ChangeEvidence found = evidence(blocks, after, d, whiten);
   test.correlation = correlation_of(d.residuals, options);
   const double places = static_cast<double>(count + 1 - 2 * least_side);
   test.false_alarm =

@@ -130,7 +130,7 @@ double chance_of(double t2, Eigen::Index parameters, std::size_t blocks, const C
                             options.freedom * (static_cast<double>(blocks) - 2));
 }
 
-Evidence evidence(Blocks blocks, Part second, const Division& d, const ParameterMatrix& whiten) {
+ChangeEvidence evidence(Blocks blocks, Part second, const Division& d, const ParameterMatrix& whiten) {
   const SmallFactor whole(d.H);
   const ParameterMatrix from_before = whole.solve(d.H2).transpose();  // H2 inv(H)
   const ParameterMatrix from_after = whole.solve(d.H1).transpose();   // H1 inv(H)
@@ -141,7 +141,7 @@ Evidence evidence(Blocks blocks, Part second, const Division& d, const Parameter
     (second.has(i) ? C2 : C1) += blocks[i].root * C * blocks[i].root;
     (second.has(i) ? g2 : g1) += d.gradients[i];
   }
-  Evidence result;
+  ChangeEvidence result;
   result.S = from_after * g2 - from_before * g1;
   result.V = from_before * C1 * from_before.transpose() + from_after * C2 * from_after.transpose();
   const SmallFactor factor(result.V);

@@ -53,12 +53,12 @@ ParameterMatrix residual_covariance(Blocks blocks, const std::vector<Parameters>
 double chance_of(double t2, Eigen::Index parameters, std::size_t blocks, const ChangeTestOptions& options);
 
 /// The evidence: S, the gradient of one side at the common optimum, its variance V, and T^2 = S'V^-1 S.
-struct Evidence {
+struct ChangeEvidence {
   Parameters S;
   ParameterMatrix V;
   double t2 = 0;
 };
-Evidence evidence(Blocks blocks, Part second, const Division& d, const ParameterMatrix& whiten);
+ChangeEvidence evidence(Blocks blocks, Part second, const Division& d, const ParameterMatrix& whiten);
 
 /// How much more sums of neighbouring residuals vary than sums of independent ones, which shows noise that
 /// wanders. If noise is forgotten, blocks k apart correlate by r1 phi^(k-1). Long sums then vary by the

@@ -115,7 +115,7 @@ SegmentTest test_segment(Blocks blocks, std::size_t least_side, std::size_t leas
   if (test.part.to == 0) return test;
 
   const Division d = divide(blocks, test.part, options);
-  const Evidence found = evidence(blocks, test.part, d, whitener(blocks));
+  const ChangeEvidence found = evidence(blocks, test.part, d, whitener(blocks));
   test.correlation = correlation_of(d.residuals, options);
   const auto lengths = static_cast<double>(count - 2 * least_side - least_part + 1);
   const double parts = lengths * (lengths + 1) / 2;

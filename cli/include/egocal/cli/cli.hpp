@@ -26,7 +26,7 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What a failure says to people: its own text; of memory that ran out, which has none, that.
+/// What a failure says to people: its own text, or "not enough memory", as that failure has none.
 std::string text_of(const std::exception& error);
 
 /// Ends the program with this exit code; the command has already said why.

@@ -35,8 +35,8 @@ struct ResidualWeightOptions {
   /// Weights before any residual is known: squared residuals of rotation and translation [rad^2, m^2], a
   /// hundredth and a tenth.
   double first_rotation = 1e-4, first_translation = 1e-2;
-  /// Of a stride's variance of translations, what is taken to be their own at least: the rest is rotation
-  /// noise times the length of the motions, and the difference of two variances that scatter.
+  /// Least part of a stride's variance of translations that counts as their own. What rotation noise adds is
+  /// subtracted, and may scatter beyond all of it. Study: docs/weights.md, "Rotation noise in long motions".
   double least_own_part = 0.1;
   double first_lambda = 0.5;  ///< of the shape before any residual is known: a memory of one and a half steps
 };

@@ -60,7 +60,7 @@ class ClockFollower {
   /// Takes the next pose of one stream. Returns the poses that may be used now, in the order of time.
   std::vector<ReleasedPose> push(Side side, const StampedPose& pose);
   /// No pose comes for a while. Returns the held poses that may be used, all at once. What the poses after
-  /// them give stays the same, to the bit.
+  /// them give stays the same, to the bit, where stamps ascend.
   std::vector<ReleasedPose> release_held();
   /// Whether release_held() has any.
   bool can_release() const;

@@ -139,13 +139,17 @@ std::optional<UnexplainedPart> left_out_by(const Explained& final) {
   return unexplained_part(final.motions, final.fit.T, shortest);
 }
 
-/// The motions outside of a part of the drive, with the extrinsic that suits them best. Blocks are as long as
-/// before.
+/// The motions outside of a part of the drive, with the extrinsic that suits them best. Blocks have as many
+/// motions as before.
 Explained without_part(const Explained& whole, const UnexplainedPart& part, const DiagnosisOptions& options) {
   Explained rest{whole.motions, {}};
-  std::erase_if(rest.motions.all,
+  std::vector<Motion>& motions = rest.motions.all;
+  std::erase_if(motions,
                 [&](const Motion& motion) { return motion.time >= part.begin && motion.time < part.end; });
-  if (!rest.motions.all.empty()) rest.fit = robust_fit(rest.motions, options.fit);
+  if (motions.empty()) return rest;
+  rest.motions.blocks =
+      std::max<std::size_t>(1, whole.motions.blocks * motions.size() / whole.motions.all.size());
+  rest.fit = robust_fit(rest.motions, options.fit);
   return rest;
 }
 

@@ -18,7 +18,7 @@ namespace {
 std::vector<MotionPair> motions_over(const Instants& instants, std::int64_t origin_us, std::size_t steps,
                                      std::size_t most, const MotionSampleOptions& motions) {
   std::vector<MotionPair> pairs;
-  const std::size_t n = instants.size(), each = std::max<std::size_t>(1, n / most);
+  const std::size_t n = instants.size(), each = (n + most - 1) / most;
   const double longest = motions.most_stretched * static_cast<double>(steps) * instants.period;
   MotionEnds ends(instants, {}, {}, steps, each);
   for (std::size_t i = 0; i + steps < n; i += each) {

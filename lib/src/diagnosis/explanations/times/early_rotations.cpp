@@ -58,13 +58,14 @@ Finding worded_late_positions(const EarlyRotations& found, Side side, const Answ
       format("Give positions and rotations of %s of the same times: no filter that smooths or delays one of "
              "them.",
              mark(which)),
-      format(", or those of %s are %s by as much, or one of the sensors is on a part that is steered: the "
-             "turns show it by %.0f standard deviations.",
-             mark(rest), seconds > 0 ? "earlier" : "later", found.sigmas()));
+      format(
+          ", or those of %s are %s by as much, or one of the sensors is on a part that is steered or towed: "
+          "the turns show it by %.0f standard deviations.",
+          mark(rest), seconds > 0 ? "earlier" : "later", found.sigmas()));
   return finding;
 }
 
-/// A part that is steered turns into the curve before the vehicle does.
+/// A part that is steered turns into the curve before the vehicle does, one that is towed after it.
 Finding worded_steered(const EarlyRotations& found, const Answered& answered) {
   const bool leads = found.seconds > 0;
   const char which = (found.side == Side::a) == leads ? 'a' : 'b';
@@ -73,10 +74,12 @@ Finding worded_steered(const EarlyRotations& found, const Answered& answered) {
   finding.improvement = std::exp(std::max(0.0, found.gain));
   finding.T_a_b = to_pose(frame_a_moved(answered.T_a_b, moved_by_two_times(found, answered)));
   say(finding,
-      format("%s may be on a part that is steered: it turns aside by %.2f s times the turning rate",
-             mark(which), std::abs(found.seconds)),
+      format(
+          "%s may be on a part that is steered, or %s on one that is towed: the angle between them is about "
+          "%.2f s times the turning rate",
+          mark(which), mark(which == 'a' ? 'b' : 'a'), std::abs(found.seconds)),
       "Fasten both sensors to one rigid part, and record again.",
-      ". Its rotations then look early by that time.");
+      ". The rotations of the first then look early by that time.");
   return finding;
 }
 
