@@ -30,7 +30,7 @@ Eigen::Matrix<double, n, n> restricted(const Matrix8d& Z, const Eigen::Matrix<do
 
 /// Newton step of u without a part; empty where what is left has no minimum.
 template <int n>
-std::optional<double> step_without(const JointDerivatives& all, const JointDerivatives& part) {
+std::optional<double> step_without(const ScaleDerivatives& all, const ScaleDerivatives& part) {
   const Eigen::Matrix<double, n, n> hessian = all.hessian - part.hessian;
   const Eigen::LDLT<Eigen::Matrix<double, n, n>> factor(hessian);
   if (factor.info() != Eigen::Success || !factor.isPositive()) return std::nullopt;
@@ -40,7 +40,7 @@ std::optional<double> step_without(const JointDerivatives& all, const JointDeriv
 
 }  // namespace
 
-JointDerivatives::OverScale JointDerivatives::over_scale() const {
+ScaleDerivatives::OverScale ScaleDerivatives::over_scale() const {
   const Eigen::Index n = hessian.rows() - 1;
   const Eigen::LDLT<Hessian> extrinsic(hessian.topLeftCorner(n, n));
   OverScale result;
@@ -69,7 +69,7 @@ JointForm::JointForm(const ScaleStatistics& all, const ScalePoint& point) : poin
   orthogonal_ = lambda.orthogonal / all.weight;
 }
 
-JointDerivatives JointForm::of(const ScaleStatistics& part) const {
+ScaleDerivatives JointForm::of(const ScaleStatistics& part) const {
   const double s = point_.scale, k = point_.weight_slope;
   const double moved = point_.balance.translation / point_.weight;
   const Eigen::Vector4d r = point_.q.real, d = point_.q.dual;
@@ -86,7 +86,7 @@ JointDerivatives JointForm::of(const ScaleStatistics& part) const {
   const double curvature =
       moved * (k * k * v.dot(free) + (k + 1) * (k + 1) * v.dot(linear) + (k + 2) * (k + 2) * v.dot(square));
   const Eigen::Index n = tangents_.cols();
-  JointDerivatives result;
+  ScaleDerivatives result;
   result.gradient.resize(n + 1);
   result.gradient.head(n) = tangents_.transpose() * (Q * v);
   result.gradient[n] = 0.5 * v.dot(slope);
@@ -102,7 +102,7 @@ JointDerivatives JointForm::of(const ScaleStatistics& part) const {
 }
 
 double spread_of_scale(std::span<const ScaleStatistics> blocks, const JointForm& form,
-                       const JointDerivatives& all, std::size_t least_blocks) {
+                       const ScaleDerivatives& all, std::size_t least_blocks) {
   if (blocks.size() < least_blocks) return infinity;
   std::uint64_t pairs = 0;
   for (const ScaleStatistics& block : blocks) pairs += block.count;
@@ -110,7 +110,7 @@ double spread_of_scale(std::span<const ScaleStatistics> blocks, const JointForm&
   double mean = 0;
   for (const ScaleStatistics& block : blocks) {
     if (block.count == 0 || block.count == pairs) return infinity;
-    const JointDerivatives left_out = form.of(block);
+    const ScaleDerivatives left_out = form.of(block);
     const std::optional<double> step =
         all.gradient.size() == 7 ? step_without<7>(all, left_out) : step_without<4>(all, left_out);
     if (!step) return infinity;

@@ -26,7 +26,7 @@ struct ScalePoint {
 
 /// Half of the gradient and of the second derivatives over x y z roll pitch yaw in the frame of q (planar
 /// mode: x y yaw), and then u.
-struct JointDerivatives {
+struct ScaleDerivatives {
   using Gradient = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 7, 1>;
   using Hessian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7>;
   Gradient gradient;
@@ -44,7 +44,7 @@ struct JointDerivatives {
 class JointForm {
  public:
   JointForm(const ScaleStatistics& all, const ScalePoint& point);
-  JointDerivatives of(const ScaleStatistics& part) const;
+  ScaleDerivatives of(const ScaleStatistics& part) const;
 
  private:
   ScalePoint point_;
@@ -56,6 +56,6 @@ class JointForm {
 /// each dropped by one Newton step over scale and extrinsic together, with Student's factor as for the
 /// extrinsic. Infinite where it is unknown: also with fewer than least_blocks. all: of(sum of the blocks).
 double spread_of_scale(std::span<const ScaleStatistics> blocks, const JointForm& form,
-                       const JointDerivatives& all, std::size_t least_blocks);
+                       const ScaleDerivatives& all, std::size_t least_blocks);
 
 }  // namespace egocal::detail

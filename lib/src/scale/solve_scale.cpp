@@ -305,8 +305,8 @@ ScaleSolution solve_scale(std::span<const ScaleStatistics> given, const ScaleOpt
 
   const double energy = f.energy(answer.s);
   const detail::JointForm form = joint_form(f, all, options, answer.s, answer.q);
-  const detail::JointDerivatives joint = form.of(all);
-  const detail::JointDerivatives::OverScale over_scale = joint.over_scale();
+  const detail::ScaleDerivatives joint = form.of(all);
+  const detail::ScaleDerivatives::OverScale over_scale = joint.over_scale();
   result.observability = std::clamp(over_scale.curvature / (2 * energy), 0.0, 1.0);
   const double noise = std::max(0.0, f.translation_cost(answer.s, answer.q));
   const double shown = result.observability * energy;

@@ -116,14 +116,14 @@ std::optional<ScaleOfAnswer> scale_of_answer(const Evidence& evidence, const Ans
   constexpr double weight_slope = -1;
   const JointForm form(all,
                        {1, of.T, answered.problem.balance, weight_slope, all.weight, answered.problem.mode});
-  const JointDerivatives joint = form.of(all);
-  const JointDerivatives::OverScale over_scale = joint.over_scale();
+  const ScaleDerivatives joint = form.of(all);
+  const ScaleDerivatives::OverScale over_scale = joint.over_scale();
   ScaleOfAnswer result;
   for (Eigen::Index i = 0; i < 6; ++i) result.per[i] = over_scale.sensitivity[static_cast<std::size_t>(i)];
   result.per = of.in_frame_of_a(result.per);
   if (!(over_scale.curvature > 0)) return result;  // the motions show no scale
-  const Eigen::LDLT<JointDerivatives::Hessian> factor(joint.hessian);
-  const JointDerivatives::Gradient step = factor.solve(joint.gradient);
+  const Eigen::LDLT<ScaleDerivatives::Hessian> factor(joint.hessian);
+  const ScaleDerivatives::Gradient step = factor.solve(joint.gradient);
   const double spread = spread_of_scale(parts, form, joint, small.least_blocks);
   if (!step.allFinite() || !std::isfinite(spread)) return result;
   // noise of one sensor alone pulls the scale by at most this: evenly likely anywhere within (solve_scale)
