@@ -111,6 +111,17 @@ TEST_F(Commands, ReportAndBaselinesUseTheStreamsAsTheyAreSolved) {
     EXPECT_EQ(labels_of(read(path("scaled.html")), figure), labels);
   }
   EXPECT_THAT(read(path("scaled.html")), HasSubstr("times the lengths of b, estimated and proven"));
+  // the motions were those of the frames in the ground planes: up to 12 m of residual
+  ASSERT_EQ(egocal("simulate --terrain flat --poses 400 --noise 0.003 --out " + path("flat")).code, 0);
+  ASSERT_EQ(egocal("report " + path("flat/lidar.tum") + " " + path("flat/camera.tum") +
+                   " --planar --plane-a 0,0,1,-1.8 --plane-b 0,-1,0,-1.5 --out " + path("flat.html"))
+                .code,
+            0);
+  const std::vector<std::string> metres =
+      labels_of(read(path("flat.html")), "Translation residuals of motions");
+  const auto unit = std::find(metres.begin(), metres.end(), "[m]");
+  ASSERT_GE(unit - metres.begin(), 2);
+  EXPECT_LT(std::stod(*(unit - 2)), 0.3) << "the highest tick";
   EXPECT_EQ(egocal("align " + path("scaled/lidar.tum") + " " + path("scaled/camera.tum")).code, 3);
   expect_refusal(egocal("align one"), 2, "expected two trajectory files A and B\n");  // no --pairs
   const Outcome aligned = egocal("align --json " + scaled);

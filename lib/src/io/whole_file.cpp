@@ -81,6 +81,19 @@ int open_in_place(const std::string& path) {
   return fcntl(*own, F_DUPFD_CLOEXEC, 0);
 }
 
+std::string link_of(int fd) {
+  return "/proc/self/fd/" + std::to_string(fd);
+}
+
+/// A file without a name, of which nothing is left where the process is killed. -1: the file system has none,
+/// or /proc is not there to name it by later.
+int open_unnamed(const fs::path& folder) {
+  const int fd = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_APPEND | O_CLOEXEC, 0666);
+  if (fd < 0 || access(link_of(fd).c_str(), F_OK) == 0) return fd;
+  close(fd);
+  return -1;
+}
+
 }  // namespace
 
 bool write_all(int fd, std::span<const std::byte> bytes) {
@@ -127,13 +140,12 @@ WholeFile::WholeFile(const std::string& file) : file_(file), target_(without_lin
   struct stat there {};
   const bool exists = stat(target_.c_str(), &there) == 0;
   if (!can_be_replaced(file)) fail("is there and is not a file that could be replaced");
-  for (int n = 0; fd_ < 0; ++n) {
-    temporary_ =
-        target_ + "." + std::to_string(getpid()) + "-" + std::to_string(n) + std::string(temporary_suffix);
-    fd_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
-    if (fd_ < 0 && (errno != EEXIST || n == most_temporaries))
-      fail(std::string("cannot be written: ") + std::strerror(errno));
-  }
+  fd_ = open_unnamed(folder_of(target_));
+  if (fd_ < 0)
+    name_temporary([this](const char* name) {
+      fd_ = open(name, O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
+      return fd_ >= 0;
+    });
   if (exists && fchmod(fd_, there.st_mode & 07777) != 0) {
     // a file of another owner: it gets the usual permissions
   }
@@ -143,6 +155,18 @@ WholeFile::WholeFile(const std::string& file) : file_(file), target_(without_lin
 WholeFile::~WholeFile() {
   if (fd_ >= 0) close(fd_);
   if (!temporary_.empty()) unlink(temporary_.c_str());
+}
+
+/// Under the first name that `take` succeeds with.
+void WholeFile::name_temporary(const std::function<bool(const char*)>& take) {
+  for (int n = 0; temporary_.empty(); ++n) {
+    const std::string name =
+        target_ + "." + std::to_string(getpid()) + "-" + std::to_string(n) + std::string(temporary_suffix);
+    if (take(name.c_str()))
+      temporary_ = name;
+    else if (errno != EEXIST || n == most_temporaries)
+      fail(std::string("cannot be written: ") + std::strerror(errno));
+  }
 }
 
 void WholeFile::fail(const std::string& why) const {
@@ -155,7 +179,7 @@ void WholeFile::flush() {
 }
 
 void WholeFile::write(std::span<const std::byte> bytes) {
-  if (temporary_.empty()) fail("is complete; nothing can be written to it any more");
+  if (committed_) fail("is complete; nothing can be written to it any more");
   if (buffer_.size() + bytes.size() > buffer_size) flush();
   if (bytes.size() < buffer_size)
     buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
@@ -168,11 +192,17 @@ void WholeFile::write(std::string_view text) {
 }
 
 void WholeFile::commit() {
-  if (temporary_.empty()) return;
+  if (committed_) return;
   flush();
-  if (fsync(fd_) != 0 || std::rename(temporary_.c_str(), target_.c_str()) != 0)
+  if (fsync(fd_) != 0) fail(std::string("cannot be written: ") + std::strerror(errno));
+  // a name cannot be given to it in place of another file's
+  name_temporary([unnamed = link_of(fd_)](const char* name) {
+    return linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0;
+  });
+  if (std::rename(temporary_.c_str(), target_.c_str()) != 0)
     fail(std::string("cannot be written: ") + std::strerror(errno));
   temporary_.clear();
+  committed_ = true;
   sync_folder(target_);
 }
 

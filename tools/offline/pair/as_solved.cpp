@@ -70,6 +70,7 @@ std::vector<MotionPair> pairs_of_fit(const Motions& motions, const CalibrationOp
   const double steps = period > 0 ? std::round(calibration.fit.motion_seconds / period) : 1;
   paired.options.stride = static_cast<int>(std::clamp(steps, limits::stride.least, limits::stride.most));
   paired.options.robust = false;
+  paired.options.mode = Mode::spatial;  // motions of the sensors, not of the frames in their planes
   return pair_motions(paired.options, motions.a, paired.b).pairs;
 }
 

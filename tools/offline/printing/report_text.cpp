@@ -127,7 +127,9 @@ std::string uncertainty_text(const Calibration& calibration) {
                   : "observable, too few motions for a standard deviation";
     text += fmt::format("  {:<12}{}\n", direction_names[i], value);
   }
-  if (!calibration.observability.hint.empty()) text += fmt::format("  {}\n", calibration.observability.hint);
+  // more motion does not help where the motions contradict each other
+  if (!calibration.observability.hint.empty() && calibration.verdict != Verdict::contradictory)
+    text += fmt::format("  {}\n", calibration.observability.hint);
   return text;
 }
 

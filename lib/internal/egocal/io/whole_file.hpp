@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,8 +12,9 @@
 namespace egocal {
 
 /// A file that takes its name when it is complete and on the disk: a reader of the name sees the old file
-/// or the new one, even after a power cut. Until then the content is in a temporary file beside it
-/// (FILE.PID-N.part, a new one each time), which goes when the object does. Where the name is a symbolic
+/// or the new one, even after a power cut. Until then it has none, and goes when the object or the process does.
+/// Where the file system has no such files (NFS), the content is in a temporary file beside it
+/// (FILE.PID-N.part, a new one each time), which a killed process leaves behind. Where the name is a symbolic
 /// link, the file that it points to is replaced, and a file that is replaced hands on its permissions.
 class WholeFile {
  public:
@@ -33,11 +35,13 @@ class WholeFile {
 
  private:
   void flush();
+  void name_temporary(const std::function<bool(const char*)>& take);
   [[noreturn]] void fail(const std::string& why) const;
 
   std::string file_;       ///< as given, for messages
   std::string target_;     ///< without symbolic links
-  std::string temporary_;  ///< empty: committed
+  std::string temporary_;  ///< empty: it has no name
+  bool committed_ = false;
   std::vector<std::byte> buffer_;
   int fd_ = -1;
 };
