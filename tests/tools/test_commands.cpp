@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // The real program on real files: what it prints, what it refuses and how.
+#include <algorithm>
 #include <cmath>
 
 #include "commands.hpp"

@@ -12,8 +12,8 @@
 namespace egocal {
 
 /// A file that takes its name when it is complete and on the disk: a reader of the name sees the old file
-/// or the new one, even after a power cut. Until then it has none, and goes when the object or the process does.
-/// Where the file system has no such files (NFS), the content is in a temporary file beside it
+/// or the new one, even after a power cut. Until then it has none, and goes when the object or the process
+/// does. Where the file system has no such files (NFS), the content is in a temporary file beside it
 /// (FILE.PID-N.part, a new one each time), which a killed process leaves behind. Where the name is a symbolic
 /// link, the file that it points to is replaced, and a file that is replaced hands on its permissions.
 class WholeFile {
