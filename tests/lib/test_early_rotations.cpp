@@ -83,6 +83,25 @@ TEST(EarlyRotations, AreNotAClockThatDiffers) {
   EXPECT_LT(std::abs(found.seconds), 0.5 * std::abs(found.of_rotations));
 }
 
+// There another time of the positions is another lever arm: up to 8 standard deviations of nothing.
+TEST(EarlyRotations, AreNotAClockThatDiffersAtOneSpeed) {
+  SimulationOptions options;
+  options.terrain = Terrain::rough;
+  options.poses = 401;
+  options.rate = 3;
+  options.roughness = 0.1;
+  options.relative_noise = 0.003;
+  for (const double offset : {0.04, 0.08}) {
+    options.faults = {{}, {.clock_offset = offset}};
+    const testing::Streams streams = testing::simulated_drive(options);
+    const detail::EarlyRotations found = seen(streams, Side::b);
+    EXPECT_GT(found.sigmas(), 3.5) << "not by the standard deviations alone";
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    EXPECT_EQ(find(calibration, "late_positions_b"), nullptr);
+    EXPECT_NE(find(calibration, "clock_offset"), nullptr) << offset;
+  }
+}
+
 // Which stream it is, and whether its mounting or a filter turns it, the motions cannot tell.
 TEST(EarlyRotations, AreNamedWithBothReadings) {
   for (const std::uint64_t seed : {1, 3}) {

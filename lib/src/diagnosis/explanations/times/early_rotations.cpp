@@ -20,9 +20,10 @@ namespace egocal::detail {
 namespace {
 
 bool shows_two_times(const EarlyRotations& found, const EarlyRotationsOptions& early) {
-  return found.sigmas() > early.sigmas &&
+  return found.sigmas() > early.sigmas && found.gain > early.least_gain &&
          std::abs(found.of_rotations) > early.sigmas * found.of_rotations_stddev &&
-         std::abs(found.seconds) > early.least_part * std::abs(found.of_rotations);
+         std::abs(found.of_rotations - found.seconds) <
+             early.most_of_positions * std::abs(found.of_rotations);
 }
 
 /// In the directions that are known.

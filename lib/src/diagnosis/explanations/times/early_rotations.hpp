@@ -14,18 +14,21 @@
 
 namespace egocal::detail {
 
-/// Study: docs/trust_rules.md, "Rotations of another time". Of 45 clean drives of 14 machines the largest
-/// number of standard deviations is 2.6, of the real ones 3.0; of eight trams with a sensor on a bogie 3.9
-/// to 14.
+/// Study: docs/trust_rules.md, "Rotations of another time".
 struct EarlyRotationsOptions {
   TwoTimesOptions times;
   std::size_t least = 60;  ///< fewer do not show eight numbers and their scatter
   /// Of the time between rotations and positions, and of the rotations from those of the other stream: where
   /// it is the positions that have another time, LatePositions tells it better.
   double sigmas = 3.5;
-  /// A part of the time that both the rotations and the positions are off by is that of the clock: the rest
-  /// is at least this part of the time of the rotations.
-  double least_part = 0.5;
+  /// The positions have the time of the other stream, but for this part of that of the rotations, which is
+  /// the clock's. Where the speed is constant the time of the positions is that of another lever arm, and
+  /// noise on poses or a clock that differs leaves up to 11 standard deviations: of the time of the
+  /// positions.
+  double most_of_positions = 0.5;
+  /// And two times make squared residuals smaller by this mean logarithm than one does. Steered and towed
+  /// parts: 0.075 to 0.96; right streams whose positions have the time of the other one: 0.003.
+  double least_gain = 0.05;
   double matters = 2;           ///< standard deviations of the answer by which it moves, at least
   double least_move = 1.0 / 6;  ///< of the tolerances: 10 cm (LateByARowOptions::least_change)
   double first_look = 2.0 / 3;  ///< of `sigmas` at which the other stream is looked at, too
