@@ -92,7 +92,8 @@ TEST(EarlyRotations, AreNotAClockThatDiffersAtOneSpeed) {
   options.roughness = 0.1;
   options.relative_noise = 0.003;
   for (const double offset : {0.04, 0.08}) {
-    options.faults = {{}, {.clock_offset = offset}};
+    options.faults.resize(2);
+    options.faults[1].clock_offset = offset;
     const testing::Streams streams = testing::simulated_drive(options);
     const detail::EarlyRotations found = seen(streams, Side::b);
     EXPECT_GT(found.sigmas(), 3.5) << "not by the standard deviations alone";

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "../support/findings.hpp"
@@ -47,6 +50,46 @@ TEST(FaultyStreams, AStreamThatStandsStillIsNamed) {
   EXPECT_EQ(find(calibrate(streams.a, streams.b), "frozen_b"), nullptr);
   streams.b = testing::frozen(streams.b, 0.4, 0.7);
   EXPECT_NE(find(calibrate(streams.a, streams.b), "frozen_b"), nullptr);
+}
+
+// "frozen_b" counted as what explains the drive: answers were up to 85 degrees off, and incomplete or good.
+TEST(FaultyStreams, AStreamThatFreezesHidesNoOtherMistake) {
+  const std::map<std::string, std::function<Trajectory(const Trajectory&)>> mistakes{
+      {"inverted_b", testing::inverted},
+      {"quaternion_order_b", testing::scalar_first},
+      {"axes_b", testing::mirrored},
+      {"scale", [](const Trajectory& right) { return testing::lengthened(right, 0.37); }}};
+  for (const auto& [code, make] : mistakes)
+    for (const Terrain terrain : {Terrain::rough, Terrain::free})
+      for (const std::uint64_t seed : {1, 2}) {
+        testing::Streams streams = drive(terrain, seed);
+        streams.b = make(testing::frozen(streams.b, 0.4, 0.65));
+        const Calibration calibration = calibrate(streams.a, streams.b);
+        EXPECT_NE(find(calibration, "frozen_b"), nullptr) << code << seed;
+        const Finding* finding = find(calibration, code);
+        ASSERT_NE(finding, nullptr) << code << seed << calibration.reason;
+        EXPECT_TRUE(finding->certain) << code << seed;
+        EXPECT_EQ(calibration.verdict, Verdict::contradictory) << code << seed;
+      }
+}
+
+// A parked vehicle with noise of a tenth of a millimetre: "111 % of the typical motion is not explained".
+TEST(FaultyStreams, AVehicleThatMostlyStandsAndGoesStraightContradictsNothing) {
+  testing::Random random(3);
+  const DualQuaternion T = testing::displacement({0, 0, 0.5}, {0.4, 0.1, 0.2});
+  testing::Streams streams;
+  for (int i = 0; i < 400; ++i) {
+    const double way = 0.05 * std::max(0, i - 300);
+    const DualQuaternion vehicle = testing::displacement(Eigen::Vector3d::Zero(), {way, 0, 0});
+    const auto noisy = [&random](const DualQuaternion& pose) {
+      return canonical_sign(pose * testing::displacement(random.normal3(2e-5), random.normal3(1e-4)));
+    };
+    streams.a.push_back({100'000 * static_cast<std::int64_t>(i), noisy(vehicle)});
+    streams.b.push_back({100'000 * static_cast<std::int64_t>(i), noisy(vehicle * T)});
+  }
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_EQ(calibration.verdict, Verdict::incomplete) << calibration.reason;
+  EXPECT_NE(find(calibration, "too_little_motion"), nullptr);
 }
 
 /// An arm whose encoders repeat each pose for two of five seconds; the other sensor has noise.

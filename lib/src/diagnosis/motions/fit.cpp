@@ -87,4 +87,12 @@ Fit fit_at(const Motions& motions, const Pose& T_a_b, double motion_seconds,
   return fit;
 }
 
+double relative_by_way(const Motions& motions, const Pose& T_a_b) {
+  std::vector<std::pair<double, double>> parts;
+  for (const Motion& motion : motions.all)
+    if (const double length = 0.5 * (motion.t_a.norm() + motion.t_b.norm()); length > 0)
+      parts.emplace_back(residual_at(motion, T_a_b).translation / length, length);
+  return parts.empty() ? 0 : weighted_median(std::move(parts));
+}
+
 }  // namespace egocal::detail

@@ -9,6 +9,7 @@
 
 #include "diagnosis/streams/flat.hpp"
 #include "diagnosis/streams/rounded_copy.hpp"
+#include "diagnosis/streams/step_size.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/pairing/match_samples.hpp"
@@ -25,16 +26,6 @@ struct Steps {
   double travelled = 0;                     ///< size of all motions
 };
 
-/// Largest part of a motion: half-angles and half-lengths as they come.
-double size_of(const DualQuaternion& motion) {
-  return std::max(motion.real.tail<3>().norm(), motion.dual.norm());
-}
-
-/// What computing with a pose adds to a motion from it.
-double rounding_of(const DualQuaternion& pose, const StreamCheckOptions& options) {
-  return options.rounding * (1 + pose.dual.norm());
-}
-
 Steps steps_of(const Instants& instants, const StreamCheckOptions& options) {
   Steps steps;
   const std::size_t n = instants.size();
@@ -43,16 +34,17 @@ Steps steps_of(const Instants& instants, const StreamCheckOptions& options) {
     const PosePair from = instants.at(i), to = instants.at(i + 1);
     const DualQuaternion a = canonical_sign(conjugate(from.a) * to.a),
                          b = canonical_sign(conjugate(from.b) * to.b);
-    const double size_a = size_of(a), size_b = size_of(b);
-    const bool still_a = size_a < rounding_of(from.a, options),
-               still_b = size_b < rounding_of(from.b, options);
+    const double size_a = step_size(a), size_b = step_size(b);
+    const bool still_a = size_a < rounding_of(from.a, options.rounding),
+               still_b = size_b < rounding_of(from.b, options.rounding);
     if (still_a && still_b) continue;
     ++steps.all;
     steps.travelled += std::max(size_a, size_b);
     // digits of a file: with coordinates of a map these may be those of a motion
     const double digits = options.same * (1 + from.a.dual.norm() + from.b.dual.norm());
-    const double alike = std::max(rounding_of(from.a, options) + rounding_of(from.b, options),
-                                  std::min(digits, options.same_part * std::max(size_a, size_b)));
+    const double alike =
+        std::max(rounding_of(from.a, options.rounding) + rounding_of(from.b, options.rounding),
+                 std::min(digits, options.same_part * std::max(size_a, size_b)));
     if ((a.vec() - b.vec()).norm() < alike) ++steps.equal;
     if (still_a) {
       ++steps.frozen_a;
@@ -93,7 +85,7 @@ std::optional<Finding> without_part(char which, const Trajectory& own, const Tra
       const DualQuaternion motion = conjugate(trajectory[i].pose) * trajectory[i + each].pose;
       sum.travelled += motion.dual.norm();
       sum.turned += motion.real.tail<3>().norm();
-      sum.rounding += rounding_of(trajectory[i].pose, options);
+      sum.rounding += rounding_of(trajectory[i].pose, options.rounding);
     }
     return sum;
   };

@@ -144,11 +144,9 @@ void add_interpolated_streams(const Foreseen& foreseen, const DiagnosisOptions& 
 
 /// Whether the findings, or what replaces them, explain the drive.
 bool are_explained(const Foreseen& foreseen, const Answered& answered, const DiagnosisOptions& options,
-                   bool more_than_frozen, WrongStream& wrong_stream, std::vector<Finding>& findings) {
+                   WrongStream& wrong_stream, std::vector<Finding>& findings) {
   const Evidence& evidence = foreseen.evidence;
-  const auto is_explanation = [&](const Finding& one) {
-    return explains(one, options) && !(more_than_frozen && of_frozen_stream(one));
-  };
+  const auto is_explanation = [&](const Finding& one) { return explains(one, options); };
   return replace_by_large_move(foreseen.pairing, evidence, answered, options, wrong_stream, findings) ||
          replace_by_moves(foreseen.pairing, evidence, answered, options, findings) ||
          replace_by_wrong_stream(wrong_stream, findings) || one_is_inverted(findings, options) ||
@@ -199,22 +197,17 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   const DualQuaternion& best = evidence.given.explained.fit.T;
   Misfit misfit{detail::misfit(moving, at_answer), detail::misfit(moving, evaluated(moving, best)),
                 median_misfit(moving, at_answer)};
-  // pairing rejects the motions of a frozen stream: what contradicts the answer is something else
-  const bool more_than_frozen = misfit.at_answer > options.doubtful_misfit;
-  if (more_than_frozen)
-    result.findings.insert(result.findings.begin(), foreseen.beside_frozen.begin(),
-                           foreseen.beside_frozen.end());
   add_faults_of_poses(evidence, answered, options, result.findings);
   WrongStream wrong_stream(evidence, answered.problem.mode, options);
   replace_by_contents(options, wrong_stream, result.findings);
-  const bool explained =
-      are_explained(foreseen, answered, options, more_than_frozen, wrong_stream, result.findings);
+  const bool explained = are_explained(foreseen, answered, options, wrong_stream, result.findings);
   if (has(result.findings, "too_little_motion")) misfit = {};  // noise contradicts every answer
   if (!explained)
     look_further(pairing, evidence, answered, result.fit, options, wrong_stream, misfit, result.findings);
   if (pairing.mode != Mode::planar) name_clock_step(evidence, result.fit, options, result.findings);
   add_what_is_beside(foreseen, options, wrong_stream, answered, result);
   misfit = where_known(misfit, moving, answered, best, result.findings);
+  result.findings.insert(result.findings.begin(), foreseen.frozen.begin(), foreseen.frozen.end());
   judge(result, answered, misfit, options);
   return result;
 }

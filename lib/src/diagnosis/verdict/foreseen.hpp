@@ -3,10 +3,12 @@
 // What is found before there is an answer.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "diagnosis/explanations/explanations.hpp"
+#include "diagnosis/streams/awake_streams.hpp"
 #include "egocal/diagnosis/foresee.hpp"
 
 namespace egocal::detail {
@@ -18,8 +20,9 @@ struct Foreseen {
   DiagnosisOptions options;
   Evidence evidence;
   std::vector<Finding> findings{};  ///< about the streams, where there are enough motions
-  /// What else explains streams of which one stops at times: an arm holds still, and may be misread besides.
-  std::vector<Finding> beside_frozen{};
+  /// That a stream freezes at times. The streams and the evidence are then those without its repeated poses.
+  std::vector<Finding> frozen{};
+  std::shared_ptr<const AwakeStreams> awake{};
   bool has_offset = false;
   std::optional<TimeOffset> offset{};  ///< offset_by_turning(), where it was looked for already
 };

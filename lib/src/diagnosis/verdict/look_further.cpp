@@ -13,6 +13,7 @@
 #include "diagnosis/explanations/contents/inverted_and_moved.hpp"
 #include "diagnosis/explanations/lengths/not_a_move.hpp"
 #include "diagnosis/explanations/lengths/part_of_other_scale.hpp"
+#include "diagnosis/motions/fit.hpp"
 #include "diagnosis/mount/back_and_forth.hpp"
 #include "diagnosis/mount/following_mount.hpp"
 #include "diagnosis/mount/large_move.hpp"
@@ -130,7 +131,7 @@ std::optional<Finding> turning_apart(const Evidence& evidence, const Answered& a
   const Motions& motions = evidence.given.explained.motions;
   // what the rotations leave is noise: the translations alone can contradict the answer
   const auto take_translations_alone = [&] {
-    misfit.at_answer = misfit.median = fit.translation_relative_median;
+    misfit.at_answer = misfit.median = relative_by_way(motions, to_pose(answered.T_a_b));
   };
   if (turned_together(evidence) < options.least_turning) {
     take_translations_alone();
