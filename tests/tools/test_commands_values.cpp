@@ -289,5 +289,72 @@ TEST_F(Commands, AReportStatesTheFitThatSolvePrints) {
   EXPECT_THAT(page, HasSubstr("Rotation residuals of motions of " + seconds));
 }
 
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+/// The text of a line that solve prints after its label of 14 cells; empty: there is none.
+std::string printed(const std::string& text, const std::string& label) {
+  const std::string begin = "\n" + label + std::string(14 - label.size(), ' ');
+  const std::size_t at = text.find(begin);
+  if (at == std::string::npos) return "";
+  return text.substr(at + begin.size(), text.find('\n', at + 1) - at - begin.size());
+}
+
+// The page said "the goal is not reached yet" and nothing of what is missing, how long, and what to drive
+TEST_F(Commands, AReportSaysOfTheGoalWhatSolvePrints) {
+  ASSERT_EQ(egocal("simulate --poses 300 --noise 0.01 --out " + path("drive")).code, 0);
+  const std::string pair = " " + path("drive/lidar.tum") + " " + path("drive/camera.tum");
+  const std::string goal = pair + " --goal 0.001deg,0.1mm";
+  const std::string solve = egocal("solve" + goal).out;
+  ASSERT_EQ(egocal("report" + goal + " --out " + path("page.html")).code, 3);
+  const std::string page = read(path("page.html"));
+  ASSERT_THAT(printed(solve, "goal"), HasSubstr("missing: "));
+  ASSERT_NE(printed(solve, "next"), "");
+  EXPECT_THAT(page, HasSubstr("<p>Goal: " + printed(solve, "goal") + ".</p>"));
+  EXPECT_THAT(page, HasSubstr("<p>Next: " + printed(solve, "next") + "</p>"));
+  ASSERT_EQ(egocal("report" + pair + " --goal 10deg,1m --out " + path("page.html")).code, 0);
+  EXPECT_THAT(read(path("page.html")), HasSubstr("<p>Goal: reached.</p>"));
+}
+
+// A possible finding looked like a certain one, and its cure was called "Remedy"
+TEST_F(Commands, AReportMarksPossibleFindingsAndNamesCures) {
+  ASSERT_EQ(egocal("simulate --poses 300 --noise 0.01 --terrain free --out " + path("drive")).code, 0);
+  ASSERT_EQ(
+      egocal("simulate --poses 300 --noise 0.01 --terrain free --scale camera=2.7 --out " + path("wrong"))
+          .code,
+      0);
+  for (const char* drive : {"drive", "wrong"}) {
+    const std::string pair =
+        " " + path(std::string(drive) + "/lidar.tum") + " " + path(std::string(drive) + "/camera.tum");
+    const json findings = json::parse(egocal("solve --json" + pair).out)["findings"];
+    egocal("report" + pair + " --out " + path("page.html"));
+    const std::string page = read(path("page.html"));
+    EXPECT_THAT(page, ::testing::Not(HasSubstr("Remedy")));
+    std::size_t certain = 0;
+    for (const json& finding : findings) certain += finding["certain"].get<bool>() ? 1 : 0;
+    EXPECT_EQ(count_of(page, "<b>Finding:</b> "), certain);
+    EXPECT_EQ(count_of(page, "<b>Possible:</b> "), findings.size() - certain);
+    EXPECT_EQ(count_of(page, "<br>Cure: "), findings.size());
+  }
+}
+
+// Figures without anything in them were drawn
+TEST_F(Commands, AReportLeavesOutFiguresThatWouldBeEmpty) {
+  ASSERT_EQ(egocal("simulate --poses 4 --out " + path("drive")).code, 0);
+  egocal("report " + path("drive/lidar.tum") + " " + path("drive/camera.tum") + " --out " +
+         path("page.html"));
+  const std::string page = read(path("page.html"));
+  EXPECT_LT(count_of(page, "<figure>"), 8u);
+  EXPECT_EQ(count_of(page, "No figure of: "), 1u);
+  EXPECT_THAT(page, HasSubstr("The drive is too short."));
+  for (std::size_t at = page.find("<figure>"); at != std::string::npos; at = page.find("<figure>", at + 1)) {
+    const std::string figure = page.substr(at, page.find("</figure>", at) - at);
+    EXPECT_GT(count_of(figure, "<polyline") + count_of(figure, "<path") + count_of(figure, "<rect"), 0u);
+  }
+}
+
 }  // namespace
 }  // namespace egocal::test_commands_values

@@ -84,6 +84,26 @@ TEST_F(SamplesCommand, NamesOneWrongRowInTheSingular) {
   EXPECT_NE(solve("--samples").out.find(", 1 wrong and not used: row 1\n"), std::string::npos);
 }
 
+// The page had four empty figures and nothing of target, spread, noise and wrong samples
+TEST_F(SamplesCommand, AReportSaysOfSamplesWhatSolvePrints) {
+  write(false);
+  const std::string printed = solve("--samples").out, page_file = folder.path("page.html");
+  const std::string command = paths::bin_dir() + "/egocal report " + folder.path("hand.tum") + " " +
+                              folder.path("eye.tum") + " --samples --out " + page_file + " >/dev/null 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const std::string page = content_of(page_file);
+  for (const std::string label : {"samples", "fit", "target"}) {
+    const std::string begin = "\n" + label + std::string(14 - label.size(), ' ');
+    const std::size_t at = printed.find(begin) + begin.size();
+    const std::string value = printed.substr(at, printed.find('\n', at) - at);
+    EXPECT_NE(page.find("<th>" + label + "</th><td>" + value + "</td>"), std::string::npos) << value;
+  }
+  EXPECT_NE(page.find("Position residuals of samples"), std::string::npos);
+  EXPECT_NE(page.find("wrong, not used"), std::string::npos);
+  for (const char* of_streams : {"residuals of motions", "0 of a", "time offset"})
+    EXPECT_EQ(page.find(of_streams), std::string::npos) << of_streams;
+}
+
 TEST_F(SamplesCommand, TheCureOfEyeToHandIsToLeaveItOut) {
   write(false, 60);
   const Result result = solve("--samples --json --eye-to-hand");

@@ -10,6 +10,7 @@
 #include "commands/request_options.hpp"
 #include "egocal/io/whole_file.hpp"
 #include "offline/pair/unit.hpp"
+#include "offline/printing/samples.hpp"
 #include "warnings.hpp"
 
 namespace egocal::tools {
@@ -43,8 +44,8 @@ ReportInput report_input(const SolveRequest& request, SolveResult result, const 
   input.options.scale = 1;
   input.method = result.method;
   input.verdict = headline(result.calibration);
-  for (const Finding& finding : result.calibration.findings)
-    input.findings.push_back(finding.message + (finding.remedy.empty() ? "" : " Remedy: " + finding.remedy));
+  if (result.samples)
+    input.samples = SamplesOfPage{samples_text(result), result.samples->residuals, result.matched.rows_a};
   input.warnings = result.warnings;
   input.calibration = std::move(result.calibration);
   input.truth = request.truth;

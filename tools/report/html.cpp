@@ -15,8 +15,8 @@
 #include "figures/plot.hpp"
 #include "offline/common/backing_of.hpp"
 #include "offline/printing/report.hpp"
-#include "offline/printing/trust.hpp"
-#include "report/series.hpp"
+#include "report/pictures.hpp"
+#include "report/trust_page.hpp"
 
 namespace egocal::tools {
 
@@ -29,7 +29,8 @@ h1 { font-size: 1.5rem; margin-bottom: 0; } h2 { font-size: 1.1rem; margin: 1.6r
 .good { border-color: #009e73; }
 .doubtful { border-color: #e69f00; background: #fdf3dc; }
 .contradictory { border-color: #d55e00; background: #fbe6da; }
-table { border-collapse: collapse; } td, th { padding: .15rem .8rem .15rem 0; text-align: left; vertical-align: top; }
+.finding, .possible { padding-left: .8rem; border-left: .25rem solid #d55e00; } .possible { border-left: .25rem dotted #888; color: #444; }
+table { border-collapse: collapse; } td, th { padding: .15rem .8rem .15rem 0; text-align: left; vertical-align: top; } td, code { overflow-wrap: anywhere; }
 td.number { font-variant-numeric: tabular-nums; text-align: right; } code, pre { font-size: .9rem; }
 pre { overflow-x: auto; background: #f7f7f7; padding: .5rem; } .figures { display: flex; flex-wrap: wrap; gap: 1rem; }
 figure { margin: 0; max-width: 100%; } svg { max-width: 100%; height: auto; } .note { color: #444; }
@@ -102,7 +103,8 @@ std::string uncertainty(const Calibration& calibration) {
     table += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", direction_names[i], value);
   }
   table += "</table>\n";
-  if (!calibration.observability.hint.empty())
+  // more motion does not help where the motions contradict each other
+  if (!calibration.observability.hint.empty() && calibration.verdict != Verdict::contradictory)
     table += "<p>" + escaped(calibration.observability.hint) + "</p>\n";
   return table +
          "<p class='note'>A standard deviation says how far the answer of another drive of this kind would "
@@ -111,117 +113,28 @@ std::string uncertainty(const Calibration& calibration) {
          "odometries.</p>\n";
 }
 
-Plot map_plot(const Map& map) {
-  Plot plot;
-  plot.title = "Path of sensor a, measured by a and by b";
-  plot.x.label = "along the path's widest direction [m]";
-  plot.y.label = "across [m]";
-  plot.equal_axes = true;
-  plot.height = 230;
-  Series a, b;
-  a.name = "by a";
-  a.x = map.a_x;
-  a.y = map.a_y;
-  b.name = "by b, through T_a_b";
-  b.x = map.b_x;
-  b.y = map.b_y;
-  b.style = Series::Style::dashes;
-  b.colour = Colour::vermilion;
-  plot.series = {a, b};
-  return plot;
+std::string clock_rows(const Calibration& calibration) {
+  std::string table;
+  table += row("time offset", fmt::format("{:.4f} s added to b", calibration.time_offset_applied));
+  if (calibration.time_offset)
+    table += row("", fmt::format("estimated: &plusmn; {:.4f} s, correlation of the turning rates {:.2f}",
+                                 calibration.time_offset->stddev, calibration.time_offset->correlation));
+  return table;
 }
 
-Plot over_time(const std::string& title, const std::string& unit, const std::vector<double>& time,
-               const std::vector<double>& values, Colour colour) {
-  Plot plot;
-  plot.title = title;
-  plot.x.label = "time [s]";
-  plot.y.label = unit;
-  plot.y.least = 0;
-  Series series;
-  series.x = time;
-  series.y = values;
-  series.style = Series::Style::points;
-  series.colour = colour;
-  plot.series = {series};
-  return plot;
-}
-
-Plot histogram_plot(const std::string& title, const std::string& unit, const std::vector<double>& values,
-                    Colour colour) {
-  Plot plot;
-  plot.title = title;
-  plot.x.label = unit;
-  plot.y.label = "motions";
-  plot.y.least = 0;
-  plot.series = {histogram(values, 40, colour)};
-  return plot;
-}
-
-Plot progress_plot(const Progress& progress, bool rotation) {
-  Plot plot;
-  plot.title = rotation ? "Standard deviation of the rotation" : "Standard deviation of the translation";
-  plot.x.label = "time [s]";
-  plot.y.label = rotation ? "[deg]" : "[cm]";
-  plot.y.scale = AxisScale::logarithmic;
-  constexpr Colour colours[] = {Colour::blue, Colour::vermilion, Colour::green};
-  constexpr Series::Style styles[] = {Series::Style::line, Series::Style::dashes, Series::Style::line};
-  for (std::size_t i = 0; i < 3; ++i) {
-    Series series;
-    series.name = direction_names[i + (rotation ? 3 : 0)];
-    series.x = progress.time;
-    for (const double stddev : progress.stddev[i + (rotation ? 3 : 0)])
-      series.y.push_back(stddev * (rotation ? degrees : 100));
-    series.colour = colours[i];
-    series.style = styles[i];
-    plot.series.push_back(series);
-  }
-  return plot;
-}
-
-Plot excitation_plot(const Excitation& excitation) {
-  Plot plot;
-  plot.title = "Turning of sensor a about its own axes";
-  plot.x.label = "time [s]";
-  plot.y.label = "[deg/s]";
-  constexpr Colour colours[] = {Colour::blue, Colour::vermilion, Colour::green};
-  for (std::size_t i = 0; i < 3; ++i) {
-    Series series;
-    series.name = fmt::format("{} (rms {:.2g})", direction_names[i], excitation.root_mean_square[i]);
-    series.x = excitation.time;
-    series.y = excitation.turning[i];
-    series.colour = colours[i];
-    plot.series.push_back(series);
-  }
-  return plot;
-}
-
-std::string figure(const Plot& plot) {
-  return "<figure>" + svg(plot) + "</figure>\n";
-}
-
-std::string pictures(const ReportInput& input) {
-  const Residuals residuals = residuals_of(input.pairs, input.calibration.T_a_b);
-  const double seconds = input.calibration.fit.motion_seconds;
-  const std::string motions = seconds > 0 ? fmt::format("motions of {:.2g} s", seconds) : "motions";
-  std::string out = "<p class='note'>Residuals are those of the " + motions +
-                    " that the fit is stated of; none is rejected.</p>\n<div class='figures'>\n";
-  if (!input.a.empty()) out += figure(map_plot(map_of(input.a, input.b, input.calibration.T_a_b)));
-  out += figure(over_time("Rotation residuals of " + motions, "[deg]", residuals.time, residuals.rotation,
-                          Colour::blue));
-  out +=
-      figure(histogram_plot("Rotation residuals of " + motions, "[deg]", residuals.rotation, Colour::blue));
-  out += figure(over_time("Translation residuals of " + motions, "[m]", residuals.time, residuals.translation,
-                          Colour::vermilion));
-  out += figure(
-      histogram_plot("Translation residuals of " + motions, "[m]", residuals.translation, Colour::vermilion));
-  if (!input.a.empty()) {
-    constexpr int points = 40;  // of a drawn curve
-    const Progress progress = progress_of(input.a, input.b, input.options, points);
-    out += figure(progress_plot(progress, false)) + figure(progress_plot(progress, true));
-    out += figure(excitation_plot(excitation_of(input.a)));
-  }
-  return out + "</div>\n";
+/// What was made of streams or motion pairs; of still poses the section "Samples" says it.
+std::string rows_of_motions(const ReportInput& input) {
+  const Calibration& calibration = input.calibration;
+  if (input.samples) return "";
+  const bool streams = !input.a.empty();
+  std::string table = row("motions", escaped(motions_in_words(calibration)));
+  if (streams)
+    table +=
+        row("poses", fmt::format("{} of a, {} of b, {} instants synchronised", calibration.counts.poses_a,
+                                 calibration.counts.poses_b, calibration.counts.synchronised));
+  table += row("not used", fmt::format("{} outliers, {}", calibration.counts.outliers,
+                                       escaped(rejections_in_words(calibration.counts))));
+  return streams ? table + clock_rows(calibration) : table;
 }
 
 std::string settings(const ReportInput& input) {
@@ -230,15 +143,7 @@ std::string settings(const ReportInput& input) {
   table += row("sensor a", "<code>" + escaped(input.name_a) + "</code>");
   table += row("sensor b", "<code>" + escaped(input.name_b) + "</code>");
   table += row("mode", calibration.problem.mode == Mode::planar ? "planar" : "three-dimensional");
-  table += row("motions", escaped(motions_in_words(calibration)));
-  table += row("poses", fmt::format("{} of a, {} of b, {} instants synchronised", calibration.counts.poses_a,
-                                    calibration.counts.poses_b, calibration.counts.synchronised));
-  table += row("not used", fmt::format("{} outliers, {}", calibration.counts.outliers,
-                                       escaped(rejections_in_words(calibration.counts))));
-  table += row("time offset", fmt::format("{:.4f} s added to b", calibration.time_offset_applied));
-  if (calibration.time_offset)
-    table += row("", fmt::format("estimated: &plusmn; {:.4f} s, correlation of the turning rates {:.2f}",
-                                 calibration.time_offset->stddev, calibration.time_offset->correlation));
+  table += rows_of_motions(input);
   const char* scaled = input.options.scale_side == Side::a ? "a" : "b";
   if (calibration.scale)
     table += row("scale", fmt::format("{:.6g} &plusmn; {:.6g} times the lengths of {}, estimated{}",
@@ -265,12 +170,11 @@ std::string report_html(const ReportInput& input) {
       " in the frame of " + escaped(input.name_a) + "</p>\n";
   const std::string word = input.verdict.substr(0, input.verdict.find(':'));
   out += "<p class='verdict " + escaped(word) + "'>" + escaped(input.verdict) + "</p>\n";
-  for (const std::string& finding : input.findings) out += "<p>" + escaped(finding) + "</p>\n";
-  if (const std::string fit = fit_in_words(calibration.fit); !fit.empty())
-    out += "<p>Fit: " + escaped(fit) + ".</p>\n";
+  out += trust_page(calibration);
   if (input.unit != "m")
     out += "<p>Lengths are in the " + escaped(input.unit) +
            ", also where m or cm is written: metres only if that sensor measures metres.</p>\n";
+  if (input.samples) out += section("Samples", table_of_lines(input.samples->text));
   out += section("Transform", transform("T_a_b: pose of sensor b in sensor a, p_a = T_a_b p_b",
                                         calibration.T_a_b, input.unit) +
                                   transform("T_b_a: its inverse", calibration.T_b_a, input.unit));
@@ -281,12 +185,11 @@ std::string report_html(const ReportInput& input) {
                        error.translation * 100);
   }
   out += section("Uncertainty", uncertainty(calibration));
-  out +=
-      section("Optimality",
-              fmt::format("<p>{}. Cost {:.6g}, lower bound {:.6g}, gap {:.3g}.{}</p>\n",
-                          optimality(certificate), certificate.cost, certificate.lower_bound, certificate.gap,
-                          any_from_nominal(calibration) ? std::string(" ") + cost_with_nominal : ""));
-  out += section("Fit and motion", pictures(input));
+  out += section("Optimality",
+                 fmt::format("<p>{}. Cost {:.6g}, lower bound {:.6g}, gap {:.3g}. {}</p>\n",
+                             optimality(certificate), certificate.cost, certificate.lower_bound,
+                             certificate.gap, any_from_nominal(calibration) ? cost_with_nominal : ""));
+  out += section(input.samples ? "Residuals" : "Fit and motion", pictures(input));
   out += section("How it was made", settings(input));
   return out + "</body>\n</html>\n";
 }

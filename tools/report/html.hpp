@@ -7,8 +7,16 @@
 #include <vector>
 
 #include "egocal/calibrate.hpp"
+#include "egocal/samples/calibrate_samples.hpp"
 
 namespace egocal::tools {
+
+/// What a set of still poses has of its own.
+struct SamplesOfPage {
+  std::string text;                       ///< what `egocal solve` prints: samples_text()
+  std::vector<SampleResidual> residuals;  ///< per sample
+  std::vector<std::size_t> rows;          ///< of each sample in the file of a, from 0
+};
 
 /// What a report is made of.
 struct ReportInput {
@@ -17,9 +25,9 @@ struct ReportInput {
   std::vector<MotionPair> pairs;  ///< of motions as long as those that the fit is stated of
   CalibrationOptions options;
   Calibration calibration;
+  std::optional<SamplesOfPage> samples;  ///< of still poses; a, b and pairs are empty then
   std::string method;
   std::string verdict;                ///< headline: the word of the verdict, a colon, the reason
-  std::vector<std::string> findings;  ///< what is wrong and its cure, one sentence each
   std::vector<std::string> warnings;  ///< about what was read
   std::string unit = "m";             ///< of lengths: "m", or "unit of b"
   std::string command;                ///< the command line
