@@ -42,7 +42,10 @@ struct OwnTranslations {
 /// An error of rotation (real rows, |e|^2) moves the dual rows of a motion of
 /// length |t| by |t|^2 / 4 |e|^2, (15). Long motions show it even where noise on
 /// poses alone makes rotations of all strides alike. It is no noise of motions.
-OwnTranslations own_translations(const StrideLadder& ladder, const StrideResiduals& residual) {
+/// In the plane it stays: residuals of rotations have one axis there, and long
+/// motions would win for noise that their spread misses (9 instead of 6 of 100
+/// drives, tests/lib/test_missed_noise.cpp).
+OwnTranslations own_translations(const StrideLadder& ladder, const StrideResiduals& residual, Mode mode) {
   OwnTranslations own;
   for (std::size_t i = 0; i < ladder.size(); ++i) {
     const Statistics& motions = ladder.sums[i].motions;
@@ -50,7 +53,8 @@ OwnTranslations own_translations(const StrideLadder& ladder, const StrideResidua
     const double squared_half_length =
         motions.weight > 0 ? motions.dual_rows.topLeftCorner<4, 4>().trace() / (8 * motions.weight) : 0;
     const double all = residual.translation[i], of_rotations = residual.rotation[i] * squared_half_length;
-    const double part = all > 0 ? std::max(ladder.options.least_own_part, 1 - of_rotations / all) : 1;
+    const bool is_told_apart = all > 0 && mode != Mode::planar;
+    const double part = is_told_apart ? std::max(ladder.options.least_own_part, 1 - of_rotations / all) : 1;
     own.variances.push_back(part * all);
     own.parts.push_back(part);
     // a difference scatters as what it is a part of does
@@ -132,7 +136,7 @@ std::optional<WeightChoice> weights_by_residuals(const StrideLadder& ladder, Mod
   DualQuaternion q = minimiser(weighted_sum(ladder, weights), mode);
   for (int round = 0; round < options.rounds; ++round) {
     const StrideResiduals residual = residuals(ladder, q);
-    const OwnTranslations own = own_translations(ladder, residual);
+    const OwnTranslations own = own_translations(ladder, residual, mode);
     weights = {shape(ladder, fitted_lambda(ladder, residual.rotation, ladder.turns), ladder.turns),
                shape(ladder, fitted_lambda(ladder, own.variances, own.counts), ladder.motions)};
     for (std::size_t i = 0; i < ladder.size(); ++i) weights.translation[i] *= own.parts[i];
