@@ -17,6 +17,7 @@ namespace egocal::tools {
 namespace {
 
 constexpr const char* time_axis = "time [s]";
+constexpr Colour axis_colours[] = {Colour::blue, Colour::vermilion, Colour::green};  // of x, y, z
 
 Plot map_plot(const Map& map) {
   Plot plot;
@@ -71,7 +72,6 @@ Plot progress_plot(const Progress& progress, bool rotation) {
   plot.x.label = time_axis;
   plot.y.label = rotation ? "[deg]" : "[cm]";
   plot.y.scale = AxisScale::logarithmic;
-  constexpr Colour colours[] = {Colour::blue, Colour::vermilion, Colour::green};
   constexpr Series::Style styles[] = {Series::Style::line, Series::Style::dashes, Series::Style::line};
   for (std::size_t i = 0; i < 3; ++i) {
     Series series;
@@ -79,7 +79,7 @@ Plot progress_plot(const Progress& progress, bool rotation) {
     series.x = progress.time;
     for (const double stddev : progress.stddev[i + (rotation ? 3 : 0)])
       series.y.push_back(stddev * (rotation ? degrees : 100));
-    series.colour = colours[i];
+    series.colour = axis_colours[i];
     series.style = styles[i];
     plot.series.push_back(series);
   }
@@ -91,13 +91,12 @@ Plot excitation_plot(const Excitation& excitation) {
   plot.title = "Turning of sensor a about its own axes";
   plot.x.label = time_axis;
   plot.y.label = "[deg/s]";
-  constexpr Colour colours[] = {Colour::blue, Colour::vermilion, Colour::green};
   for (std::size_t i = 0; i < 3; ++i) {
     Series series;
     series.name = fmt::format("{} (rms {:.2g})", direction_names[i], excitation.root_mean_square[i]);
     series.x = excitation.time;
     series.y = excitation.turning[i];
-    series.colour = colours[i];
+    series.colour = axis_colours[i];
     plot.series.push_back(series);
   }
   return plot;

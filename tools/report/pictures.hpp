@@ -8,7 +8,7 @@
 
 namespace egocal::tools {
 
-/// The figures of the page. One that would be empty is left out, and a line says which and why.
+/// The figures of the page. One that would be empty is omitted, and a line says which and why.
 std::string pictures(const ReportInput& input);
 
 }  // namespace egocal::tools

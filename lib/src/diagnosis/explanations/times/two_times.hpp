@@ -42,7 +42,7 @@ class StreamOfTwoTimes {
  public:
   StreamOfTwoTimes(const Instants& instants, const Explained& given, Side side,
                    const TwoTimesOptions& options);
-  /// Of the drive, in its order; those without poses to measure rates from are left out.
+  /// Of the drive, in its order; those without poses to measure rates from are omitted.
   std::vector<TwoTimesMotion> motions(const Explained& given, std::size_t most) const;
   /// The pose of b in a with the mounting moved.
   DualQuaternion T_a_b(const TwoTimes& x) const;
