@@ -7,14 +7,14 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
-#include <map>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "diagnosis/diagnosing.hpp"
+#include "drive_record.hpp"
 #include "egocal/cli/cli.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
 #include "egocal/online/answer.hpp"
@@ -137,53 +137,18 @@ Outcome outcome_of(const Sort& sort, double minutes, double noise, double every,
   return outcome;
 }
 
-/// The lines of earlier runs, and where new ones go.
-class Record {
- public:
-  /// settings: must be the same for all lines of a file.
-  Record(const std::string& path, const std::string& settings) : path_(path) {
-    if (path.empty()) return;
-    std::ifstream in(path);
-    std::string line;
-    const bool continues = static_cast<bool>(std::getline(in, line));
-    if (continues && line != settings) {
-      std::fprintf(stderr, "live_study: %s: has other settings: %s\n", path.c_str(), line.c_str());
-      std::exit(2);
-    }
-    char name[32];
-    int index = 0;
-    Outcome o;
-    while (std::getline(in, line))
-      if (std::sscanf(line.c_str(), "%31s %d %d %d %d %d %d %lf %d", name, &index, &o.looks, &o.alarms,
-                      &o.episodes, &o.doubtful, &o.contradictory, &o.shown, &o.missed) == 9)
-        known_[{name, index}] = o;
-    in.close();
-    out_.open(path, std::ios::app);
-    if (!continues) out_ << settings << '\n';
-  }
-  const Outcome* known(const std::string& name, int index) const {
-    const auto found = known_.find({name, index});
-    return found == known_.end() ? nullptr : &found->second;
-  }
-  void add(const std::string& name, int index, const Outcome& o) {
-    if (path_.empty()) return;
-    char line[160];
-    std::snprintf(line, sizeof line, "%s %d %d %d %d %d %d %.3f %d\n", name.c_str(), index, o.looks, o.alarms,
-                  o.episodes, o.doubtful, o.contradictory, o.shown, o.missed);
-    out_ << line << std::flush;
-  }
-
- private:
-  std::string path_;
-  std::map<std::pair<std::string, int>, Outcome> known_;
-  std::ofstream out_;
-};
-
-/// One seed for every drive, whichever others are run.
-Random random_of(std::uint64_t seed, std::size_t sort, int index) {
-  Random of_sort(seed + 1000003 * sort);
-  Random one(of_sort.bits() + 0xd1b54a32d192ed03ULL * static_cast<std::uint64_t>(index));
-  return Random(one.bits());
+std::string to_line(const Outcome& o) {
+  char line[160];
+  std::snprintf(line, sizeof line, "%d %d %d %d %d %.3f %d", o.looks, o.alarms, o.episodes, o.doubtful,
+                o.contradictory, o.shown, o.missed);
+  return line;
+}
+std::optional<Outcome> from_line(const std::string* line) {
+  Outcome o;
+  if (line == nullptr || std::sscanf(line->c_str(), "%d %d %d %d %d %lf %d", &o.looks, &o.alarms, &o.episodes,
+                                     &o.doubtful, &o.contradictory, &o.shown, &o.missed) != 7)
+    return std::nullopt;
+  return o;
 }
 
 /// Number of looks with a false alarm.
@@ -245,19 +210,20 @@ int main(int argc, char** argv) {
   char settings[120];
   std::snprintf(settings, sizeof settings, "live_study seed %llu minutes %g noise %g every %g chance %g",
                 static_cast<unsigned long long>(seed), minutes, noise, every, chance);
-  Record record(path, settings);
+  bench::DriveRecord record("live_study", path, settings);
   int alarms = 0;
   for (std::size_t s = 0; s < std::size(sorts); ++s) {
     const Sort& sort = sorts[s];
     if (!only.empty() && std::find(only.begin(), only.end(), sort.name) == only.end()) continue;
     std::vector<Outcome> outcomes;
     for (int k = 0; k < drives; ++k) {
-      if (const Outcome* known = record.known(sort.name, k)) {
+      if (const std::optional<Outcome> known = from_line(record.known(sort.name, k))) {
         outcomes.push_back(*known);
         continue;
       }
-      outcomes.push_back(outcome_of(sort, minutes, noise, every, chance, show, random_of(seed, s, k)));
-      record.add(sort.name, k, outcomes.back());
+      outcomes.push_back(
+          outcome_of(sort, minutes, noise, every, chance, show, bench::random_of_drive(seed, s, k)));
+      record.add(sort.name, k, to_line(outcomes.back()));
     }
     alarms += report(sort, outcomes, minutes);
     std::fflush(stdout);

@@ -7,14 +7,14 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
-#include <map>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "../support/random_motion.hpp"
+#include "drive_record.hpp"
 #include "egocal/cli/cli.hpp"
 #include "egocal/moves/find_moves.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
@@ -153,56 +153,18 @@ Outcome outcome_of(const Sort& sort, Random random, const MovesOptions& options)
   return outcome;
 }
 
-/// The lines of earlier runs, and where new ones go.
-class Record {
- public:
-  /// settings: must be the same for all lines of a file.
-  Record(const std::string& path, const std::string& settings) : path_(path) {
-    if (path.empty()) return;
-    std::ifstream in(path);
-    std::string line;
-    if (std::getline(in, line)) {
-      if (line != settings) {
-        std::fprintf(stderr, "moves_study: %s: has other settings: %s\n", path.c_str(), line.c_str());
-        std::exit(2);
-      }
-      char name[32];
-      int index = 0;
-      Outcome o;
-      while (std::getline(in, line))
-        if (std::sscanf(line.c_str(), "%31s %d %d %d %d %d %lf %lf", name, &index, &o.bumps, &o.found,
-                        &o.wrong, &o.creeps, &o.error, &o.chance) == 8)
-          known_[{name, index}] = o;
-      in.close();
-      out_.open(path, std::ios::app);
-    } else {
-      out_.open(path);
-      out_ << settings << '\n';
-    }
-  }
-  const Outcome* known(const std::string& name, int index) const {
-    const auto found = known_.find({name, index});
-    return found == known_.end() ? nullptr : &found->second;
-  }
-  void add(const std::string& name, int index, const Outcome& o) {
-    if (path_.empty()) return;
-    char line[160];
-    std::snprintf(line, sizeof line, "%s %d %d %d %d %d %.3f %.6g\n", name.c_str(), index, o.bumps, o.found,
-                  o.wrong, o.creeps, o.error, o.chance);
-    out_ << line << std::flush;
-  }
-
- private:
-  std::string path_;
-  std::map<std::pair<std::string, int>, Outcome> known_;
-  std::ofstream out_;
-};
-
-/// One seed for every drive, whichever others are run.
-Random random_of(std::uint64_t seed, std::size_t sort, int index) {
-  Random of_sort(seed + 1000003 * sort);
-  Random one(of_sort.bits() + 0xd1b54a32d192ed03ULL * static_cast<std::uint64_t>(index));
-  return Random(one.bits());
+std::string to_line(const Outcome& o) {
+  char line[160];
+  std::snprintf(line, sizeof line, "%d %d %d %d %.3f %.6g", o.bumps, o.found, o.wrong, o.creeps, o.error,
+                o.chance);
+  return line;
+}
+std::optional<Outcome> from_line(const std::string* line) {
+  Outcome o;
+  if (line == nullptr || std::sscanf(line->c_str(), "%d %d %d %d %lf %lf", &o.bumps, &o.found, &o.wrong,
+                                     &o.creeps, &o.error, &o.chance) != 6)
+    return std::nullopt;
+  return o;
 }
 
 /// Number of false alarms.
@@ -259,8 +221,9 @@ int main(int argc, char** argv) {
   app.add_option("--record", path, "file of one line a drive, which is continued");
   if (const auto code = app.parse(argc, argv)) return *code;
   moves.most_blocks = static_cast<std::size_t>(std::max(1, blocks));
-  Record record(path, "moves_study seed " + std::to_string(seed) + " blocks " + std::to_string(blocks) +
-                          " chance " + std::to_string(moves.false_alarms));
+  bench::DriveRecord record("moves_study", path,
+                            "moves_study seed " + std::to_string(seed) + " blocks " + std::to_string(blocks) +
+                                " chance " + std::to_string(moves.false_alarms));
 
   int alarms = 0;
   for (std::size_t s = 0; s < all.size(); ++s) {
@@ -270,12 +233,12 @@ int main(int argc, char** argv) {
     const int count = still ? static_cast<int>(std::ceil(hours / 4 * 3600 / sort.seconds)) : drives;
     std::vector<Outcome> outcomes;
     for (int k = 0; k < count; ++k) {
-      if (const Outcome* known = record.known(sort.name, k)) {
+      if (const std::optional<Outcome> known = from_line(record.known(sort.name, k))) {
         outcomes.push_back(*known);
         continue;
       }
-      outcomes.push_back(outcome_of(sort, random_of(seed, s, k), moves));
-      record.add(sort.name, k, outcomes.back());
+      outcomes.push_back(outcome_of(sort, bench::random_of_drive(seed, s, k), moves));
+      record.add(sort.name, k, to_line(outcomes.back()));
     }
     alarms += report(sort, outcomes);
     std::fflush(stdout);

@@ -33,26 +33,10 @@ using detail::Motions;
 using detail::motions_of;
 using detail::synchronised;
 using detail::turns_too_far_by_more_than_noise;
+using testing::certain_finding;
 using testing::drive;
+using testing::expect_cured;
 using testing::find;
-
-Finding certain_finding(const Calibration& calibration, const std::string& code) {
-  const Finding* finding = find(calibration, code);
-  EXPECT_NE(finding, nullptr) << code << ": " << calibration.reason;
-  if (finding == nullptr) return {};
-  EXPECT_TRUE(finding->certain) << finding->message;
-  return *finding;
-}
-
-/// The right answer is that of the finding, and the one as given is called contradictory.
-void expect_cured(const testing::Streams& right, const Calibration& calibration, const Finding& finding,
-                  double rotation, double translation) {
-  EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;
-  ASSERT_TRUE(finding.T_a_b);
-  const ExtrinsicError error = extrinsic_error(right.T, to_dual_quaternion(*finding.T_a_b));
-  EXPECT_LT(error.rotation, rotation) << finding.message;
-  EXPECT_LT(error.translation, translation) << finding.message;
-}
 
 TEST(OtherContents, AGyroscopeThatIsSummedUpInHalfOrDoubleAnglesIsNamed) {
   for (const Terrain terrain : {Terrain::rough, Terrain::free})

@@ -20,27 +20,11 @@
 namespace egocal::test_other_rows {
 namespace {
 
+using testing::certain_finding;
+using testing::expect_cured;
 using testing::find;
 using testing::with_positions_of_row;
 using testing::with_turned_steps;
-
-Finding certain_finding(const Calibration& calibration, const std::string& code) {
-  const Finding* finding = find(calibration, code);
-  EXPECT_NE(finding, nullptr) << code << ": " << calibration.reason;
-  if (finding == nullptr) return {};
-  EXPECT_TRUE(finding->certain) << finding->message;
-  return *finding;
-}
-
-/// The right answer is that of the finding, and the one as given is called contradictory.
-void expect_cured(const testing::Streams& right, const Calibration& calibration, const Finding& finding,
-                  double rotation, double translation) {
-  EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;
-  ASSERT_TRUE(finding.T_a_b);
-  const ExtrinsicError error = extrinsic_error(right.T, to_dual_quaternion(*finding.T_a_b));
-  EXPECT_LT(error.rotation, rotation) << finding.message;
-  EXPECT_LT(error.translation, translation) << finding.message;
-}
 
 /// A car of 2 Hz that stops, backs and turns: at a constant speed these are poses of another point of the
 /// body.

@@ -3,10 +3,13 @@
 // Drives whose verdict is looked at, and the findings of one.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
 #include <string>
 
 #include "egocal/calibrate.hpp"
+#include "egocal/evaluation/errors.hpp"
 #include "simulated_drive.hpp"
 
 namespace egocal::testing {
@@ -26,6 +29,26 @@ inline const Finding* find(const Calibration& calibration, const std::string& co
   for (const Finding& finding : calibration.findings)
     if (finding.code == code) return &finding;
   return nullptr;
+}
+
+/// The finding of a code, which must be there and certain.
+inline Finding certain_finding(const Calibration& calibration, const std::string& code) {
+  const Finding* finding = find(calibration, code);
+  EXPECT_NE(finding, nullptr) << code << ": " << calibration.reason;
+  if (finding == nullptr) return {};
+  EXPECT_TRUE(finding->certain) << finding->message;
+  return *finding;
+}
+
+/// The right answer is that of the finding, within the limits [rad, m], and the one as given is called
+/// contradictory.
+inline void expect_cured(const Streams& right, const Calibration& calibration, const Finding& finding,
+                         double rotation, double translation) {
+  EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;
+  ASSERT_TRUE(finding.T_a_b);
+  const ExtrinsicError error = extrinsic_error(right.T, to_dual_quaternion(*finding.T_a_b));
+  EXPECT_LT(error.rotation, rotation) << finding.message;
+  EXPECT_LT(error.translation, translation) << finding.message;
 }
 
 }  // namespace egocal::testing
