@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// A stream that was made from the other one, in whole or in its rotations alone: its extrinsic is the answer,
+// whatever it is.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "../support/findings.hpp"
+#include "../support/simulated_drive.hpp"
+#include "egocal/calibrate.hpp"
+
+namespace egocal::test_same_streams {
+namespace {
+
+using testing::drive;
+using testing::find;
+
+/// A stream that was made from the other one by an extrinsic has that as its answer, whatever it is.
+TEST(SameStreams, AStreamThatWasMadeFromTheOtherIsNamed) {
+  const testing::Streams right = drive(Terrain::rough);
+  EXPECT_EQ(find(calibrate(right.a, right.b), "same_stream"), nullptr);
+  Trajectory made = right.a;
+  for (StampedPose& pose : made)
+    pose.pose = canonical_sign(
+        normalized(pose.pose * to_dual_quaternion(Pose{rotation_exp({0.4, -1.2, 0.3}), {0.3, 1.2, -0.6}})));
+  const Calibration calibration = calibrate(right.a, made);
+  const Finding* finding = find(calibration, "same_stream");
+  ASSERT_NE(finding, nullptr) << calibration.reason;
+  EXPECT_FALSE(finding->certain);
+  EXPECT_NE(finding->message.find("agree to rounding"), std::string::npos) << finding->message;
+}
+
+/// Rotations of one sensor in both streams, positions that are smoothed.
+TEST(SameStreams, RotationsThatWereMadeFromTheOthersAreNamed) {
+  const testing::Streams right = drive(Terrain::rough);
+  Trajectory made = right.a;
+  for (StampedPose& pose : made)
+    pose.pose = canonical_sign(
+        normalized(pose.pose * to_dual_quaternion(Pose{rotation_exp({0.4, -1.2, 0.3}), {0.3, 1.2, -0.6}})));
+  Trajectory smoothed = made;
+  for (std::size_t i = 1; i + 1 < made.size(); ++i) {
+    Pose pose = to_pose(made[i].pose);
+    pose.translation =
+        (to_pose(made[i - 1].pose).translation + pose.translation + to_pose(made[i + 1].pose).translation) /
+        3;
+    smoothed[i].pose = canonical_sign(to_dual_quaternion(pose));
+  }
+  const Calibration calibration = calibrate(right.a, smoothed);
+  const Finding* finding = find(calibration, "same_stream");
+  ASSERT_NE(finding, nullptr) << calibration.reason;
+  EXPECT_FALSE(finding->certain);
+  EXPECT_NE(finding->message.find("turn by the same angles to rounding"), std::string::npos)
+      << finding->message;
+}
+
+/// Made from a by any extrinsic, at stamps of its own between two poses of a.
+TEST(SameStreams, AStreamThatWasInterpolatedFromTheOtherIsNamed) {
+  const testing::Streams right = drive(Terrain::rough);
+  const DualQuaternion wrong = to_dual_quaternion(Pose{rotation_exp({0.4, -1.2, 0.3}), {0.3, 1.2, -0.6}});
+  Trajectory made;
+  for (std::size_t i = 1; i < right.a.size(); i += 2) {
+    const StampedPose &from = right.a[i - 1], &to = right.a[i];
+    const Pose before = to_pose(from.pose), after = to_pose(to.pose);
+    const Pose between{before.rotation.slerp(0.3, after.rotation),
+                       before.translation + 0.3 * (after.translation - before.translation)};
+    made.push_back({from.time_us + std::llround(0.3 * static_cast<double>(to.time_us - from.time_us)),
+                    canonical_sign(normalized(to_dual_quaternion(between) * wrong))});
+  }
+  for (const bool exchanged : {false, true}) {
+    const Calibration calibration = exchanged ? calibrate(made, right.a) : calibrate(right.a, made);
+    const Finding* finding = find(calibration, "same_stream");
+    ASSERT_NE(finding, nullptr) << calibration.reason;
+    EXPECT_FALSE(finding->certain);
+  }
+}
+
+/// On a straight road neither sensor turns, which is no sign of a copy.
+TEST(SameStreams, RotationsThatNeverChangeAreNoCopies) {
+  Trajectory a, b;
+  for (int i = 0; i < 200; ++i) {
+    const double x = 0.5 * i, wobble = 0.01 * std::sin(7.0 * i);
+    a.push_back({i * 100'000, to_dual_quaternion(Pose{{1, 0, 0, 0}, {x, 0, 0}})});
+    b.push_back({i * 100'000, to_dual_quaternion(Pose{{1, 0, 0, 0}, {x + wobble, wobble, 0}})});
+  }
+  EXPECT_EQ(find(calibrate(a, b), "same_stream"), nullptr);
+}
+
+/// The same, written with few digits: rounding hides that the motions agree as those of no two sensors do.
+TEST(SameStreams, AStreamThatWasMadeFromTheOtherAndRoundedIsNamed) {
+  const testing::Streams right = drive(Terrain::rough);
+  const Pose wrong{rotation_exp({0.4, -1.2, 0.3}), {0.3, 1.2, -0.6}};
+  const auto decimals = [](int count) {
+    return [unit = std::pow(10, -count)](double x) { return unit * std::round(x / unit); };
+  };
+  const auto six_digits = [](double x) {
+    const double unit = x == 0 ? 1 : std::pow(10, std::floor(std::log10(std::abs(x))) - 5);
+    return unit * std::round(x / unit);
+  };
+  using Write = std::function<double(double)>;
+  const auto written = [](Trajectory poses, const Write& position, const Write& rotation) {
+    for (StampedPose& stamped : poses) {
+      const Pose pose = to_pose(stamped.pose);
+      const Eigen::Vector4d q = pose.rotation.coeffs().unaryExpr(rotation);
+      stamped.pose = canonical_sign(to_dual_quaternion(
+          Pose{Rotation(Eigen::Vector4d(q.normalized())), pose.translation.unaryExpr(position)}));
+    }
+    return poses;
+  };
+  Trajectory made = right.a;
+  for (StampedPose& pose : made)
+    pose.pose = canonical_sign(normalized(pose.pose * to_dual_quaternion(wrong)));
+  for (const auto& [position, rotation] : {std::pair<Write, Write>{decimals(3), decimals(4)},
+                                           {decimals(4), decimals(5)},
+                                           {six_digits, six_digits}}) {
+    const Calibration calibration = calibrate(right.a, written(made, position, rotation));
+    const Finding* finding = find(calibration, "same_stream");
+    ASSERT_NE(finding, nullptr) << calibration.reason;
+    EXPECT_FALSE(finding->certain);
+    EXPECT_NE(finding->message.find("agree to the rounding"), std::string::npos) << finding->message;
+    EXPECT_EQ(find(calibrate(right.a, written(right.b, position, rotation)), "same_stream"), nullptr);
+    // its answer is the identity, which is a reason of its own
+    const Calibration copied = calibrate(right.a, written(right.a, position, rotation));
+    EXPECT_EQ(std::count_if(copied.findings.begin(), copied.findings.end(),
+                            [](const Finding& one) { return one.code == "same_stream"; }),
+              1);
+  }
+}
+
+}  // namespace
+}  // namespace egocal::test_same_streams
