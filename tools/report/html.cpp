@@ -32,8 +32,8 @@ h1 { font-size: 1.5rem; margin-bottom: 0; } h2 { font-size: 1.1rem; margin: 1.6r
 .finding, .possible { padding-left: .8rem; border-left: .25rem solid #d55e00; } .possible { border-left: .25rem dotted #888; color: #444; }
 table { border-collapse: collapse; } td, th { padding: .15rem .8rem .15rem 0; text-align: left; vertical-align: top; } td, code { overflow-wrap: anywhere; }
 td.number { font-variant-numeric: tabular-nums; text-align: right; } code, pre { font-size: .9rem; }
-pre { overflow-x: auto; background: #f7f7f7; padding: .5rem; } .figures { display: flex; flex-wrap: wrap; gap: 1rem; }
-figure { margin: 0; max-width: 100%; } svg { max-width: 100%; height: auto; } .note { color: #444; }
+pre { overflow-x: auto; background: #f7f7f7; padding: .5rem; } .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(20rem, 100%), 1fr)); gap: 1rem; }
+figure { margin: 0; max-width: 100%; } svg { width: 100%; height: auto; } .note { color: #444; }
 @media (max-width: 45rem) { .wide, .wide tbody, .wide tr, .wide th, .wide td { display: block; } .wide td { padding: 0 0 .5rem; } }
 @media print { body { margin: 0; max-width: none; } h2 { break-after: avoid; } figure, table { break-inside: avoid; } }
 </style>
