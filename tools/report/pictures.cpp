@@ -17,7 +17,14 @@ namespace egocal::tools {
 namespace {
 
 constexpr const char* time_axis = "time [s]";
+constexpr const char* time_without_breaks = "time without breaks [s]";
 constexpr Colour axis_colours[] = {Colour::blue, Colour::vermilion, Colour::green};  // of x, y, z
+
+/// Time along the axis, with a line where a break is left out.
+void set_time_axis(const DrawnTime& time, Plot& plot) {
+  plot.x.label = time.breaks().empty() ? time_axis : time_without_breaks;
+  for (const double at : time.breaks()) plot.markers.push_back({true, at, ""});
+}
 
 Plot map_plot(const Map& map) {
   Plot plot;
@@ -39,15 +46,15 @@ Plot map_plot(const Map& map) {
   return plot;
 }
 
-Plot over_time(const std::string& title, const std::string& unit, const std::vector<double>& time,
-               const std::vector<double>& values, Colour colour) {
+Plot over_time(const std::string& title, const std::string& unit, const DrawnTime& time,
+               const std::vector<double>& seconds, const std::vector<double>& values, Colour colour) {
   Plot plot;
   plot.title = title;
-  plot.x.label = time_axis;
+  set_time_axis(time, plot);
   plot.y.label = unit;
   plot.y.least = 0;
   Series series;
-  series.x = time;
+  series.x = seconds;
   series.y = values;
   series.style = Series::Style::points;
   series.colour = colour;
@@ -66,10 +73,10 @@ Plot histogram_plot(const std::string& title, const std::string& unit, const std
   return plot;
 }
 
-Plot progress_plot(const Progress& progress, bool rotation) {
+Plot progress_plot(const Progress& progress, const DrawnTime& time, bool rotation) {
   Plot plot;
   plot.title = rotation ? "Standard deviation of the rotation" : "Standard deviation of the translation";
-  plot.x.label = time_axis;
+  set_time_axis(time, plot);
   plot.y.label = rotation ? "[deg]" : "[cm]";
   plot.y.scale = AxisScale::logarithmic;
   constexpr Series::Style styles[] = {Series::Style::line, Series::Style::dashes, Series::Style::line};
@@ -86,10 +93,10 @@ Plot progress_plot(const Progress& progress, bool rotation) {
   return plot;
 }
 
-Plot excitation_plot(const Excitation& excitation) {
+Plot excitation_plot(const Excitation& excitation, const DrawnTime& time) {
   Plot plot;
   plot.title = "Turning of sensor a about its own axes";
-  plot.x.label = time_axis;
+  set_time_axis(time, plot);
   plot.y.label = "[deg/s]";
   for (std::size_t i = 0; i < 3; ++i) {
     Series series;
@@ -150,7 +157,7 @@ std::string figures(const std::vector<Plot>& plots, const char* why) {
     if (shows_something(plot))
       drawn += "<figure>" + svg(plot) + "</figure>\n";
     else
-      omitted.push_back(plot.title + (plot.x.label == time_axis ? " over time" : ""));
+      omitted.push_back(plot.title + (plot.x.label.starts_with("time") ? " over time" : ""));
   std::string out;
   if (!drawn.empty()) out += "<div class='figures'>\n" + drawn + "</div>\n";
   if (!omitted.empty())
@@ -159,22 +166,24 @@ std::string figures(const std::vector<Plot>& plots, const char* why) {
   return out;
 }
 
-void add_residuals(const ReportInput& input, const std::string& motions, std::vector<Plot>& plots) {
-  const Residuals residuals = residuals_of(input.pairs, input.calibration.T_a_b);
+void add_residuals(const ReportInput& input, const DrawnTime& time, const std::string& motions,
+                   std::vector<Plot>& plots) {
+  const Residuals residuals = residuals_of(input.pairs, input.calibration.T_a_b, time);
   const std::string rotation = "Rotation residuals of " + motions;
   const std::string translation = "Translation residuals of " + motions;
-  plots.push_back(over_time(rotation, "[deg]", residuals.time, residuals.rotation, Colour::blue));
+  plots.push_back(over_time(rotation, "[deg]", time, residuals.time, residuals.rotation, Colour::blue));
   plots.push_back(histogram_plot(rotation, "[deg]", residuals.rotation, Colour::blue));
-  plots.push_back(over_time(translation, "[m]", residuals.time, residuals.translation, Colour::vermilion));
+  plots.push_back(
+      over_time(translation, "[m]", time, residuals.time, residuals.translation, Colour::vermilion));
   plots.push_back(histogram_plot(translation, "[m]", residuals.translation, Colour::vermilion));
 }
 
-void add_progress(const ReportInput& input, std::vector<Plot>& plots) {
+void add_progress(const ReportInput& input, const DrawnTime& time, std::vector<Plot>& plots) {
   constexpr int points = 40;  // of a drawn curve
-  const Progress progress = progress_of(input.a, input.b, input.options, points);
-  plots.push_back(progress_plot(progress, false));
-  plots.push_back(progress_plot(progress, true));
-  plots.push_back(excitation_plot(excitation_of(input.a)));
+  const Progress progress = progress_of(input.a, input.b, input.options, points, time);
+  plots.push_back(progress_plot(progress, time, false));
+  plots.push_back(progress_plot(progress, time, true));
+  plots.push_back(excitation_plot(excitation_of(input.a, time), time));
 }
 
 }  // namespace
@@ -183,14 +192,19 @@ std::string pictures(const ReportInput& input) {
   if (input.samples) return figures({samples_plot(*input.samples)}, "There are too few samples.");
   const double seconds = input.calibration.fit.motion_seconds;
   const std::string motions = seconds > 0 ? fmt::format("motions of {:.2g} s", seconds) : "motions";
+  const DrawnTime time(input.a, input.pairs.empty() ? 0 : input.pairs.front().end_us);
   std::vector<Plot> plots;
-  if (!input.a.empty()) plots.push_back(map_plot(map_of(input.a, input.b, input.calibration.T_a_b)));
-  add_residuals(input, motions, plots);
-  if (!input.a.empty()) add_progress(input, plots);
+  if (!input.a.empty()) plots.push_back(map_plot(map_of(input.a, input.b, input.calibration.T_a_b, time)));
+  add_residuals(input, time, motions, plots);
+  if (!input.a.empty()) add_progress(input, time, plots);
   std::string note;
   if (!input.pairs.empty())
     note = "<p class='note'>Residuals are those of the " + motions +
            " that the fit is stated of; none is rejected.</p>\n";
+  if (!time.breaks().empty())
+    note +=
+        "<p class='note'>A dashed line is a break between drives or within a recording, which is "
+        "omitted.</p>\n";
   return note + figures(plots, input.a.empty() ? "The motion pairs have no times of their own."
                                                : "The drive is too short.");
 }
