@@ -238,13 +238,13 @@ TEST(Jackknife, FourAtATimeAreOneAfterTheOther) {
 }
 
 struct Correlations {
-  double of_neighbours = 0, sum = 0, scatter = 0, error = 0;
+  double of_neighbours = 0, sum = 0, scatter = 0, error = 0, scatter_of_sum = 0, error_of_sum = 0;
 };
 
 /// Mean of `drives` drives.
 Correlations correlations_of(double memory, int blocks, int drives) {
   Correlations mean;
-  double squares = 0;
+  double squares = 0, squares_of_sum = 0;
   Random random(11);
   for (int drive = 0; drive < drives; ++drive) {
     detail::Jackknife jackknife(blocks);
@@ -258,10 +258,14 @@ Correlations correlations_of(double memory, int blocks, int drives) {
     const double found = jackknife.correlation_of_neighbours(0, blocks);
     mean.of_neighbours += found / drives;
     squares += found * found / drives;
-    mean.sum += jackknife.sum_of_correlations(blocks) / drives;
+    const double sum = jackknife.sum_of_correlations(blocks);
+    mean.sum += sum / drives;
+    squares_of_sum += sum * sum / drives;
+    mean.error_of_sum = jackknife.error_of_sum(blocks);
     mean.error = jackknife.error_of_correlation(memory, blocks);
   }
   mean.scatter = std::sqrt(squares - mean.of_neighbours * mean.of_neighbours);
+  mean.scatter_of_sum = std::sqrt(squares_of_sum - mean.sum * mean.sum);
   return mean;
 }
 
@@ -278,6 +282,15 @@ TEST(Jackknife, KnowsHowWellItKnowsACorrelation) {
       const Correlations found = correlations_of(memory, blocks, 200);
       EXPECT_NEAR(found.error, found.scatter, 0.25 * found.scatter) << memory << " " << blocks;
     }
+}
+
+/// Blocks that are few scatter less, as they are seen from their own mean.
+TEST(Jackknife, KnowsHowWellItKnowsASumOfCorrelations) {
+  for (const int blocks : {24, 48, 200}) {
+    const Correlations found = correlations_of(0, blocks, 200);
+    EXPECT_GT(found.error_of_sum, 0.9 * found.scatter_of_sum) << blocks;
+    EXPECT_LT(found.error_of_sum, (1 + 10.0 / blocks) * found.scatter_of_sum) << blocks;
+  }
 }
 
 /// Neighbours share half of their errors, and no error lasts; the first direction alone also has some that

@@ -77,9 +77,7 @@ class Jackknife {
   /// Standard error by chance of correlation_of_neighbours() where that is r: one of m blocks has
   /// sqrt((1 - r^2) / m) (Bartlett 1946), and the parts are independent.
   double error_of_correlation(double r, double m) const {
-    double parts = 0;
-    for (int i = 0; i < 6; ++i) parts += neighbours_.changes(i);
-    return std::sqrt((1 - r * r) / (m * std::max(1.0, parts))) / part_found(m);
+    return std::sqrt(1 - r * r) * error_of_independent(m) / part_found(m);
   }
   /// Sum of the correlations of blocks up to most_lag apart, averaged over the parts. The mean of the blocks
   /// takes about 1 / m from each, which is corrected.
@@ -93,6 +91,10 @@ class Jackknife {
       }
       return sum;
     });
+  }
+  /// Standard error by chance of sum_of_correlations(), where nothing correlates.
+  double error_of_sum(double m) const {
+    return std::sqrt(static_cast<double>(most_lag)) * error_of_independent(m);
   }
   /// For the standard deviations, where few of the n blocks hold all that is known of a direction (one turn
   /// in the drive): m = (sum of c)^2 / sum of c^2 equal blocks are as concentrated. The factor is Student's
@@ -113,6 +115,13 @@ class Jackknife {
   double equal_blocks(int direction, double least) const {
     const double squares = information_squares_[direction], sum = information_[direction];
     return std::clamp(squares > 0 ? sum * sum / squares : count_, least, count_);
+  }
+
+  /// Standard error of the mean over the parts of a correlation at one lag, where nothing correlates.
+  double error_of_independent(double m) const {
+    double parts = 0;
+    for (int i = 0; i < 6; ++i) parts += neighbours_.changes(i);
+    return 1 / std::sqrt(m * std::max(1.0, parts));
   }
 
   /// What is found of r in m blocks as seen from their own mean: with six blocks half of it.

@@ -161,16 +161,13 @@ Blocks blocks_around(const Problem& problem, const ShownDirections& directions, 
 struct Sharing {
   /// Correlation of neighbours, as a part of the overlap: 0.75 less what errors that are not random need.
   static constexpr double of_overlap = 0.6;
-  /// The part of the longest motions that neighbours do not share. Blocks of one step share the noise of the
-  /// steps even so: in drives of 20 motions intervals would be a tenth wider with 1.
-  static constexpr double spread_of_longest = 0.6;
 
   explicit Sharing(double overlap) : overlap_(overlap) {
     const double squared = overlap * overlap, fourth = squared * squared, eighth = fourth * fourth;
     longest_ = eighth * eighth;  // from a tenth at 0.87 to one half at 0.96
   }
-  double of_neighbours() const { return of_overlap * overlap_ * (1 - spread_of_longest * longest_); }
-  double of_near_blocks() const { return of_overlap * overlap_ * (1 - longest_); }
+  /// What neighbours correlate by, and so do near blocks in all.
+  double of_neighbours() const { return of_overlap * overlap_ * (1 - longest_); }
   /// Factor of the correlations of near blocks: they show half of what the longest motions cause.
   double near_blocks_count() const { return 1 + longest_; }
 
@@ -178,19 +175,30 @@ struct Sharing {
   double overlap_, longest_;
 };
 
+/// What a factor of a variance is where its logarithm is itself known with this error, so that 1.96 standard
+/// deviations still cover 95 %: a variance of nu degrees of freedom has a logarithm with the variance 2 / nu,
+/// and the two add up (Satterthwaite 1946). The factor is not below one, so the error is at most its
+/// logarithm. freedom: of the variance; fewer: what the factor leaves of it.
+double with_error(double factor, double error, double fewer, double freedom) {
+  constexpr double least_freedom = 2;  // below, student_factor() is too small
+  const double uncertain = std::clamp(std::log(factor), 0.0, error);
+  const double left = 1 / (1 / fewer + 0.5 * uncertain * uncertain);
+  const double student = student_factor(std::max(least_freedom, left)) / student_factor(freedom);
+  return factor * student * student;
+}
+
 /// By how many times the variance of a sum of many blocks exceeds that of as many single ones, where errors
 /// fade from block to block as the lag-one correlation r says (an autoregression of order one). Blocks show
 /// the variance itself with fewer degrees of freedom, as (1 - r^2) / (1 + r^2) times as many would (Bartlett
-/// 1946). error: standard error of r, from which the logarithm of the factor, 2 atanh(r), has one of
-/// 2 error / (1 - r^2), at most itself, as the factor is not below one. A variance of nu degrees of freedom
-/// has a logarithm with the variance 2 / nu; the two add up (Satterthwaite 1946).
+/// 1946). error: standard error of r; the logarithm of the factor, 2 atanh(r), has 2 error / (1 - r^2).
 double of_fading(double r, double error, double freedom) {
-  constexpr double least_freedom = 2;  // below, student_factor() is too small
-  const double factor = (1 + r) / (1 - r);
-  const double uncertain = std::min(2 * error / (1 - r * r), std::log(factor));
-  const double fewer = 1 / ((1 + r * r) / ((1 - r * r) * freedom) + 0.5 * uncertain * uncertain);
-  const double student = student_factor(std::max(least_freedom, fewer)) / student_factor(freedom);
-  return factor * student * student;
+  return with_error((1 + r) / (1 - r), 2 * error / (1 - r * r), freedom * (1 - r * r) / (1 + r * r), freedom);
+}
+
+/// The same by the sum of the correlations of near blocks. error: its standard error.
+double of_near_blocks(double sum, double error, double freedom) {
+  const double factor = 1 + 2 * sum;
+  return factor > 1 ? with_error(factor, 2 * error / factor, freedom, freedom) : 1;
 }
 
 /// The part of what a direction's own correlation exceeds the mean by that counts; the rest is chance. With
@@ -209,13 +217,14 @@ Vector6d of_memory(const Jackknife& single, double overlap, const ObservabilityO
   const double of_neighbours = sharing.of_neighbours(), disjoint = 1 - overlap;
   const double mean = single.correlation_of_neighbours(of_neighbours, blocks);
   const double error = disjoint * single.error_of_correlation(std::clamp(mean, 0.0, most), blocks);
-  const double of_near = single.sum_of_correlations(blocks) - sharing.of_near_blocks();
-  const double near_blocks = 1 + 2 * sharing.near_blocks_count() * of_near;
+  const double freedom = single.count() - 1, times = sharing.near_blocks_count();
+  const double near_blocks = of_near_blocks(times * (single.sum_of_correlations(blocks) - of_neighbours),
+                                            times * single.error_of_sum(blocks), freedom);
   Vector6d factor;
   for (int i = 0; i < 6; ++i) {
     const double own = single.correlation_in_direction(i, of_neighbours, blocks).value_or(mean);
     const double r = std::clamp(mean + part_of_own * disjoint * std::max(0.0, own - mean), 0.0, most);
-    factor[i] = std::max(of_fading(r, error, single.count() - 1), near_blocks);
+    factor[i] = std::max(of_fading(r, error, freedom), near_blocks);
   }
   return factor;
 }
