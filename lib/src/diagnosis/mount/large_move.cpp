@@ -9,6 +9,7 @@
 #include "diagnosis/motions/correction.hpp"
 #include "diagnosis/motions/robust_fit.hpp"
 #include "diagnosis/motions/standing_still.hpp"
+#include "diagnosis/mount/division.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -16,41 +17,6 @@
 namespace egocal::detail {
 
 namespace {
-
-/// Two answers, before motion number `at` and from it on.
-struct Division {
-  std::size_t at = 0;
-  RobustFit before, after;
-};
-
-Division divided(const Motions& motions, std::size_t at, const RobustFitOptions& options) {
-  return {at, quick_fit(part_of(motions, 0, at), options),
-          quick_fit(part_of(motions, at, motions.all.size()), options)};
-}
-
-/// Sum of the logarithms of the squares: outliers do not decide it.
-double misfit_of(const std::vector<double>& squares, double floor) {
-  double sum = 0;
-  for (const double square : squares) sum += std::log(square + floor);
-  return sum;
-}
-
-/// The division between two answers that suits them best.
-std::size_t best_place(const Motions& motions, const Division& division, std::size_t margin, double floor) {
-  const RobustFit before = evaluated(motions, division.before.T),
-                  after = evaluated(motions, division.after.T);
-  const std::size_t n = motions.all.size();
-  double sum = 0, least = 0;
-  std::size_t place = margin;
-  for (std::size_t i = 0; i + margin <= n; ++i) {
-    if (i >= margin && (i == margin || sum < least)) {
-      least = sum;
-      place = i;
-    }
-    if (i < n) sum += std::log(before.squares[i] + floor) - std::log(after.squares[i] + floor);
-  }
-  return place;
-}
 
 /// Typical residual of one part at an answer, as a part of the typical motion.
 double typical_at(const Motions& part, const DualQuaternion& T) {
@@ -157,24 +123,10 @@ std::optional<Finding> move_of(const Instants& instants, int stride, const Diagn
   const std::size_t margin = large.least_blocks * n / motions.blocks;
   if (n < 2 * margin || margin == 0) return std::nullopt;
   const RobustFit whole = n < all.all.size() ? robust_fit(motions, options.fit) : of_all;
-  const double floor = 0.25 * whole.typical;
-  Division best;
-  double least = misfit_of(whole.squares, floor);
-  for (std::size_t i = 1; i <= large.places; ++i) {
-    const std::size_t at = i * n / (large.places + 1);
-    if (at < margin || n - at < margin) continue;
-    Division here = divided(motions, at, options.fit);
-    const double value = misfit_of(here.before.squares, floor) + misfit_of(here.after.squares, floor);
-    if (value < least) {
-      least = value;
-      best = std::move(here);
-    }
-  }
-  if (best.at == 0) return std::nullopt;
-  best.at = best_place(motions, best, margin, 0.25 * std::min(best.before.typical, best.after.typical));
+  std::optional<Division> divided = best_division(motions, whole, margin, large.places, options.fit);
+  if (!divided) return std::nullopt;
+  const Division& best = *divided;
   const Motions before = part_of(motions, 0, best.at), after = part_of(motions, best.at, n);
-  best.before = robust_fit(before, options.fit);
-  best.after = robust_fit(after, options.fit);
   if (!contradict(before, after, best, large) || suits_both(before, after, best, whole.T, large))
     return std::nullopt;
   const double time = time_of(best, instants, to_pose(whole.T), options);
@@ -184,11 +136,8 @@ std::optional<Finding> move_of(const Instants& instants, int stride, const Diagn
     return std::nullopt;
   if (!contradict_around(motions, best, time, stride * instants.period, options, large)) return std::nullopt;
 
-  Explained two{motions, {}};
-  two.fit.squares = best.before.squares;
-  two.fit.squares.insert(two.fit.squares.end(), best.after.squares.begin(), best.after.squares.end());
-  two.fit.typical = std::max(best.before.typical, best.after.typical);
-  return worded(best, time, compare({motions, whole}, two), options.unit == LengthUnit::metres);
+  return worded(best, time, compare({motions, whole}, in_two(motions, best)),
+                options.unit == LengthUnit::metres);
 }
 
 }  // namespace

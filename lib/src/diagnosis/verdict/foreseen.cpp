@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "diagnosis/explanations/contents/moved_twin.hpp"
 #include "diagnosis/motions/standing_still.hpp"
 #include "diagnosis/streams/stream_check.hpp"
 #include "diagnosis/streams/turning_alike.hpp"
@@ -63,7 +64,10 @@ Foreseen foresee_streams(const Trajectory& a, const Trajectory& b, const Pairing
   std::optional<Foreseen> rest = without_what_is_frozen(all);
   Foreseen foreseen = rest ? *std::move(rest) : std::move(all);
   // what is wrong with the streams themselves looks like other mistakes
-  if (foreseen.findings.empty()) foreseen.findings = explain(foreseen.evidence, options);
+  if (foreseen.findings.empty()) {
+    foreseen.findings = explain(foreseen.evidence, options);
+    doubt_inversion(foreseen.evidence, options, foreseen.findings);
+  }
   // of a million poses 8 MB that only explain() looks at
   foreseen.evidence.streams.turning_a = foreseen.evidence.streams.turning_b = {};
   for (std::vector<float>* const turning : {&foreseen.evidence.turning_a, &foreseen.evidence.turning_b})

@@ -78,10 +78,10 @@ struct Known {
   std::string unknown{};
 };
 
-Known known_to(const Answered& answered, const DiagnosisOptions& options) {
+/// unstable: of spread_without_fifths().
+Known known_to(const Answered& answered, const std::array<double, 6>& unstable,
+               const DiagnosisOptions& options) {
   Known result;
-  const std::array<double, 6> unstable =
-      spread_without_fifths(answered.problem, answered.T_a_b, options.stability);
   std::array<bool, 6> unknown{};
   for (const std::size_t first : {std::size_t{0}, std::size_t{3}}) {
     const double tolerance = first == 0 ? options.tolerance_translation : options.tolerance_rotation;
@@ -106,6 +106,21 @@ Known known_to(const Answered& answered, const DiagnosisOptions& options) {
   for (std::size_t i = 0; i < 6; ++i)
     if (unknown[i]) result.unknown += (result.unknown.empty() ? "" : ", ") + std::string(direction_names[i]);
   return result;
+}
+
+/// The answer without some fifth of the drive is another one, far beyond what a direction states: it hinges
+/// on a single curve, or motions of different times contradict each other. What is printed is not better
+/// known than that.
+void add_spread_of_unstable(const std::array<double, 6>& unstable, const Answered& answered,
+                            const DiagnosisOptions& options, Diagnosis& diagnosis) {
+  const UnstableOptions least;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const double tolerance = i < 3 ? options.tolerance_translation : options.tolerance_rotation;
+    if (!answered.observability.observable[i] || !(unstable[i] > tolerance) ||
+        !(unstable[i] > least.times * with_further_parts(answered.observability.stddev[i], answered, i)))
+      continue;
+    diagnosis.timing_stddev[i] = std::hypot(diagnosis.timing_stddev[i], unstable[i]);
+  }
 }
 
 /// "Not known to 1 deg and 60 cm yet": the limits are of all directions together, so the standard deviations
@@ -161,9 +176,17 @@ bool within_what_is_stated(const Finding& finding, const Answered& answered,
   return in_stated_stddevs(finding, by_motions) < two_sided_95;
 }
 
+/// Both streams inverted, and a mounting that moved once (inverted_and_moved()), fit better than one mounting
+/// as given, in both measures: right streams do not look like that, those of which the wrong one was inverted
+/// do.
+bool moved_if_inverted(const Finding& finding) {
+  return finding.code == "inverted_both" && finding.time && finding.improvement > 1;
+}
+
 /// Another answer that fits as well makes this one doubtful, unless it is the usual price of one more
 /// unknown.
 bool casts_doubt(const Finding& finding) {
+  if (moved_if_inverted(finding)) return true;
   return finding.code != "inverted_both" && finding.code != "reversed_steps" && finding.code != "scale" &&
          finding.code != "clock_offset" && finding.code != "clock_drift";
 }
@@ -283,7 +306,10 @@ void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
         break;
       }
   if (diagnosis.verdict >= Verdict::doubtful) return;
-  const Known known = known_to(answered, options);
+  const std::array<double, 6> unstable =
+      spread_without_fifths(answered.problem, answered.T_a_b, options.stability);
+  add_spread_of_unstable(unstable, answered, options, diagnosis);
+  const Known known = known_to(answered, unstable, options);
   const auto little = std::find_if(diagnosis.findings.begin(), diagnosis.findings.end(),
                                    [](const Finding& one) { return one.code == "too_little_motion"; });
   if (little != diagnosis.findings.end()) {

@@ -74,13 +74,12 @@ std::optional<Finding> inverted_and_moved(const Evidence& evidence, const Answer
   const auto slow = [](const Finding& one) { return one.change == MountingChange::slowly; };
   if (moves.empty() || !one_move(moves) || std::any_of(moves.begin(), moves.end(), slow)) return std::nullopt;
   const Explained parts = in_parts(motions, moves, options);
-  const double gain = compare(given, parts).gain;
-  if (!explains(parts, options) || gain < -options.gain ||
-      loss_of_parts(given, motions, moves, options) > options.gain)
-    return std::nullopt;
+  const double gain = compare(given, parts).gain, loss = loss_of_parts(given, motions, moves, options);
+  if (!explains(parts, options) || gain < -options.gain || loss > options.gain) return std::nullopt;
   Finding finding;
   finding.code = "inverted_both";
-  finding.improvement = std::exp(gain);
+  finding.improvement = std::exp(std::min(gain, -loss));
+  finding.time = moves.front().time;
   finding.T_a_b = moves.front().T_a_b;
   finding = worded_reading(std::move(finding), inverted, inverted);
   say(finding, finding.words.claim, finding.words.cure,
