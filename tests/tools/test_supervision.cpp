@@ -196,7 +196,7 @@ TEST_F(Supervision, AnswersAreAwaitedAfterALogWhileTheyCome) {
   Program player = script("player", "exit 0");
   player.ends_all = true;
   options.last_answers.stall = 300ms;
-  options.awaited = [left = 5]() mutable { return left > 0 ? left-- : 0; };
+  options.awaited = [left = 6]() mutable { return left > 0 ? left-- : 0; };
   start({waiting("one"), player});
   EXPECT_EQ(ended(), 0);
   EXPECT_THAT(read(path("said")), HasSubstr("still awaited: 5"));

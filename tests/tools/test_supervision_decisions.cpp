@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "supervision/last_answers.hpp"
+#include "supervision/last_motions.hpp"
 #include "supervision/silence.hpp"
 
 namespace egocal::tools::test_supervision_decisions {
@@ -99,6 +100,54 @@ TEST(LastAnswersOfALog, IdleTimeAddsUpBetweenWork) {
   for (; now < Time{10'200ms}; now += 100ms, has_work = !has_work) answers.wait_on(2, has_work, now);
   EXPECT_FALSE(answers.wait_on(2, false, now));
   EXPECT_TRUE(answers.wait_on(1, false, now)) << "another one has come";
+}
+
+// It was the end: fewer had been missing before pairing found the last motions.
+TEST(LastAnswersOfALog, MoreMotionsAreNewsAsWell) {
+  LastAnswers answers({.stall = 5s, .longest_stall = 60s});
+  Time now{};
+  for (; now < Time{4s}; now += 100ms) ASSERT_TRUE(answers.wait_on(1, false, now));
+  for (; now < Time{8s}; now += 100ms)
+    ASSERT_TRUE(answers.wait_on(15, false, now)) << now.time_since_epoch().count();
+}
+
+TEST(LastAnswersOfALog, TwoSendersThatContradictEachOtherAreNotWaitedForForEver) {
+  LastAnswers answers({.stall = 5s, .longest_stall = 60s});
+  Time now{};
+  int missing = 1;
+  while (answers.wait_on(missing, true, now) && now < Time{1h}) {
+    now += 100ms;
+    missing = 3 - missing;
+  }
+  EXPECT_LT(now, Time{1h});
+}
+
+problem_t problem_of(std::int64_t session, std::int64_t seq) {
+  problem_t problem{};
+  problem.sensor_a = "a";
+  problem.sensor_b = "b";
+  problem.session = session;
+  problem.seq = seq;
+  return problem;
+}
+
+TEST(LastMotionsOfALog, AreThoseThatPairingRepeats) {
+  LastMotions motions;
+  const PairName pair{"a", "b"};
+  EXPECT_FALSE(motions.known(pair));
+  motions.hear(problem_of(1, 5));
+  EXPECT_FALSE(motions.known(pair));
+  motions.hear(problem_of(1, 5));
+  EXPECT_TRUE(motions.known(pair));
+  motions.hear(problem_of(1, 6));
+  EXPECT_FALSE(motions.known(pair)) << "there were more";
+  motions.hear(problem_of(1, 6));
+  motions.clear();
+  EXPECT_FALSE(motions.known(pair)) << "the log has ended since";
+  motions.hear(problem_of(1, 6));
+  EXPECT_TRUE(motions.known(pair));
+  motions.hear(problem_of(2, 6));
+  EXPECT_FALSE(motions.known(pair)) << "another session";
 }
 
 }  // namespace

@@ -80,6 +80,38 @@ TEST_F(Up, WaitsUntilEveryPairOfALargeRigIsJudged) {
                                   (b == 6 ? ": contradictory: " : ": good: ")));
 }
 
+// It ended at once, as if nothing was awaited, and then waited for ever for what was calibrated.
+TEST_F(Up, WaitsForAListeningProcessThatWasStopped) {
+  ChildProcess egocal = up({"--log", log, "--speed", "20"});
+  ASSERT_TRUE(until([&] { return all_run(egocal.pid(), {"egocal", "egocal-player"}); }));
+  std::this_thread::sleep_for(500ms);
+  send_signal(child(egocal.pid(), "egocal"), SIGSTOP);
+  EXPECT_EQ(egocal.wait(60s), 0) << read(path("said"));
+  EXPECT_THAT(read(path("said")), HasSubstr("lidar -> camera: good: "));
+  EXPECT_THAT(read(path("said")), HasSubstr(", 400 motion pairs; "));
+}
+
+// It was given up after five seconds, in which the one that had stopped was not continued yet.
+TEST_F(Up, WaitsForTheVerdictOfADiagnosisThatIsStoppedAgainAndAgain) {
+  ChildProcess egocal = up({"--log", log, "--speed", "20"});
+  ASSERT_TRUE(until([&] { return all_run(egocal.pid(), {"egocal-diagnosis", "egocal-player"}); }));
+  const pid_t first = child(egocal.pid(), "egocal-diagnosi");
+  std::this_thread::sleep_for(1s);
+  std::thread stopper([&] {
+    while (test::runs(first) && child(egocal.pid(), "egocal-diagnosi") == first) {
+      send_signal(first, SIGSTOP);
+      std::this_thread::sleep_for(20ms);
+    }
+  });
+  EXPECT_EQ(egocal.wait(90s), 0) << read(path("said"));
+  stopper.join();
+  const std::string said = read(path("said"));
+  EXPECT_THAT(said, HasSubstr("egocal-diagnosis still hangs and is killed"));
+  // by what its successor knows: poses that were not saved are not judged again
+  EXPECT_THAT(said, HasSubstr("lidar -> camera: "));
+  EXPECT_THAT(said, ::testing::Not(HasSubstr("not judged")));
+}
+
 TEST_F(Up, NamesAPairWithoutAnAnswer) {
   std::ofstream(rig, std::ios::app) << "[[sensor]]\nname = \"radar\"\nchannel = \"RADAR\"\n"
                                        "[[pair]]\na = \"lidar\"\nb = \"radar\"\n";

@@ -28,6 +28,7 @@
 #include "egocal/bus/process.hpp"
 #include "egocal/error.hpp"
 #include "supervision/bus_news.hpp"
+#include "supervision/last_motions.hpp"
 
 namespace egocal::tools {
 
@@ -71,9 +72,19 @@ constexpr char failed = '!';
 /// Of our processes and of others on this host: a limit on memory.
 constexpr std::size_t most_processes = 32;
 
+/// Questions, ten a second, after which a listening process that has not counted since was stopped: it counts
+/// ten times a second.
+constexpr int most_not_counted = 20;
+
 std::int64_t mono_ms() {
   return std::chrono::duration_cast<milliseconds>(std::chrono::steady_clock::now().time_since_epoch())
       .count();
+}
+
+/// One that was stopped as well.
+void terminate(pid_t pid) {
+  kill(pid, SIGTERM);
+  kill(pid, SIGCONT);
 }
 
 void write_all(int out, const std::string& text) {
@@ -92,6 +103,7 @@ struct BusWatch::Shared {
     std::atomic<std::int64_t> heard_ms{0};
   };
   std::atomic<int> awaited{0};
+  std::atomic<int> asked{0}, counted{0};  ///< questions for it, and the last one that it was counted for
   std::array<Process, most_processes> processes;
 
   void heard(pid_t pid, std::int64_t now_ms) {
@@ -119,8 +131,10 @@ class Listening {
       bus::subscribe_pair(loop_, pair.a, pair.b,
                           [this]<class Message>(const Message& message, const bus::Arrival& arrival) {
                             answers_.hear(message);
-                            if constexpr (std::is_same_v<Message, problem_t>)
+                            if constexpr (std::is_same_v<Message, problem_t>) {
+                              last_motions_.hear(message);
                               news_.hear(message, arrival.mono_us);
+                            }
                           });
     loop_.subscribe<command_t>(bus::command_channel, [this](const command_t& command, const bus::Arrival&) {
       news_.hear(command, loop_.mono_us());
@@ -143,15 +157,19 @@ class Listening {
         status.state != bus::state_name(bus::State::waiting))
       for (const acknowledgement_t& entry : status.acknowledgements)
         if (read_until_.size() < most_channels || read_until_.contains(entry.channel))
-          read_until_[entry.channel] = entry.utime;
+          if (std::exchange(read_until_[entry.channel], entry.utime) != entry.utime) last_motions_.clear();
   }
+
+  /// The log has ended.
+  void begin_to_wait() { last_motions_.clear(); }
 
   int awaited() const {
     return static_cast<int>(
         std::count_if(rig_.pairs.begin(), rig_.pairs.end(), [&](const bus::PairConfig& config) {
           const PairName pair{config.a, config.b};
-          return answers_.best(pair) &&
-                 !(answers_.judged_to_the_end(pair) && answers_.answered_to_the_end(pair));
+          return (answers_.best(pair) || answers_.end_of_motions(pair)) &&
+                 !(last_motions_.known(pair) && answers_.judged_to_the_end(pair) &&
+                   answers_.answered_to_the_end(pair));
         }));
   }
 
@@ -165,6 +183,7 @@ class Listening {
   const BusWatchOptions& options_;
   bus::Loop loop_;
   Answers answers_;
+  LastMotions last_motions_;
   ReadUntil read_until_;
   BusNews news_;
 };
@@ -182,8 +201,13 @@ void BusWatch::listen(int out, int lines) {
       listening.hear(status);
       if (status.host == loop.host()) shared_->heard(status.pid, mono_ms());
     });
+    bool waits = false;  // the log has ended
     loop.every(milliseconds(100), [&] {
-      shared_->awaited = listening.awaited();
+      if (const int asked = shared_->asked; asked > 0) {
+        if (!std::exchange(waits, true)) listening.begin_to_wait();
+        shared_->awaited = listening.awaited();
+        shared_->counted = asked;
+      }
       // does not block: where the supervisor does not read them, lines are dropped
       write_all(lines, listening.news());
     });
@@ -272,13 +296,15 @@ std::optional<milliseconds> BusWatch::silence(pid_t pid) const {
 }
 
 int BusWatch::awaited() const {
-  return shared_->awaited;
+  const int asked = ++shared_->asked, counted = shared_->counted;
+  if (pid_ > 0 && asked - counted > most_not_counted) kill(pid_, SIGCONT);
+  return counted > 0 ? static_cast<int>(shared_->awaited) : static_cast<int>(rig_.pairs.size());
 }
 
 void BusWatch::end() {
   if (pid_ < 0) return;
   const pid_t pid = std::exchange(pid_, -1);
-  if (waitpid(pid, nullptr, WNOHANG) == 0) kill(pid, SIGTERM);
+  if (waitpid(pid, nullptr, WNOHANG) == 0) terminate(pid);
   // what it still writes must not block it
   char rest[4096];
   while (read(outcome_.get(), rest, sizeof rest) > 0) {
@@ -288,7 +314,7 @@ void BusWatch::end() {
 }
 
 Outcome BusWatch::outcome() {
-  kill(pid_, SIGTERM);
+  terminate(pid_);
   std::string text;
   char part[4096];
   for (ssize_t n = 1; n > 0 || (n < 0 && errno == EINTR);) {

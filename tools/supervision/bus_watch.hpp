@@ -56,7 +56,10 @@ class BusWatch {
 
   /// How long ago the status of a process on this host was received; nothing: never.
   std::optional<std::chrono::milliseconds> silence(pid_t pid) const;
-  /// Pairs whose newest answer or verdict is not about the newest motions: those of a drive's end still come.
+  /// Asked at a log's end for the first time. Pairs whose newest answer or verdict is not about their last
+  /// motions: those of a drive's end still come. The last ones are known once pairing has sent the same
+  /// problem again after it has acknowledged its last message. All pairs, until the listening process has
+  /// counted since the first question; one that does not count is continued (SIGCONT).
   int awaited() const;
   /// Readable, without blocking: lines of text, see BusNews.
   int lines() const { return lines_.get(); }

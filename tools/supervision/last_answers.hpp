@@ -12,8 +12,9 @@ namespace egocal::tools {
 struct LastAnswersOptions {
   /// In which no process has work and no further answer comes: a diagnosis takes seconds on a small computer.
   std::chrono::milliseconds stall{5000};
-  std::chrono::milliseconds longest_stall{
-      60'000};  ///< without a further answer, even where a process has work
+  /// Without a further answer, even where a process has work. New motions come no later than this after the
+  /// log's end.
+  std::chrono::milliseconds longest_stall{60'000};
 };
 
 class LastAnswers {
@@ -22,15 +23,16 @@ class LastAnswers {
 
   explicit LastAnswers(const LastAnswersOptions& options) : options_(options) {}
 
-  bool begun() const { return fewest_.has_value(); }
-  /// Whether to wait on. missing: answers. has_work: any process.
+  bool begun() const { return missing_.has_value(); }
+  /// Whether to wait on. missing: answers; more than before are news as well, as new motions were found.
+  /// has_work: any process.
   bool wait_on(int missing, bool has_work, Time now);
 
  private:
   LastAnswersOptions options_;
-  std::optional<int> fewest_;
-  Time fell_at_{}, asked_at_{};
-  Time::duration idle_{};  ///< since it fell
+  std::optional<int> missing_;
+  Time begun_at_{}, news_at_{}, asked_at_{};
+  Time::duration idle_{};  ///< since the last news
 };
 
 }  // namespace egocal::tools

@@ -34,7 +34,7 @@ bool has_work(pid_t pid) {
   std::string text;
   std::getline(stat, text);
   const std::size_t name_end = text.rfind(") ");
-  return name_end != std::string::npos && (text[name_end + 2] == 'R' || text[name_end + 2] == 'D');
+  return name_end != std::string::npos && std::string("RDTt").find(text[name_end + 2]) != std::string::npos;
 }
 
 void stop_until_continued(std::span<const pid_t> foreground, bool by_key) {

@@ -9,7 +9,7 @@
 
 namespace egocal::tools {
 
-/// It computes, or would if it got a core.
+/// It computes, or would if it got a core, or if it was not stopped.
 bool has_work(pid_t pid);
 
 /// Stops this process after the programs that have its terminal, until SIGCONT, then continues them. A shell

@@ -164,7 +164,11 @@ class Supervisor {
       reports_.report(
           fmt::format("the log has ended; pairs whose answer or verdict is still awaited: {}", awaited));
     end_at_ = now + look_again;
-    return last_answers_.wait_on(awaited, any_has_work(), now);
+    const bool waits = last_answers_.wait_on(awaited, any_has_work(), now);
+    if (!waits && awaited > 0)
+      reports_.report(
+          fmt::format("no more answers come; pairs without a last answer or verdict: {}", awaited));
+    return waits;
   }
 
   void start(Child& child) {
@@ -288,6 +292,7 @@ class Supervisor {
         if (child.program.foreground && options_.foreground_ended) options_.foreground_ended();
         wanted_at_once_ = wanted_at_once_ || child.program.foreground;
         end_at_ = awake() + (wanted_at_once_ ? milliseconds(0) : options_.settle);
+        if (options_.awaited) static_cast<void>(options_.awaited());  // from now on
         return;
       case Restarts::Next::hopeless:
         reports_.report(fmt::format("{} cannot be started ({}){}", child.program.name, reason(child, status),

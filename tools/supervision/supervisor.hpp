@@ -23,7 +23,8 @@ struct SupervisorOptions {
   /// The same death is reported again after this time.
   std::chrono::milliseconds repeat_report{60'000};
   std::chrono::milliseconds settle{1500};  ///< after the player's end, for the last answers
-  /// How many answers are still missing then.
+  /// How many answers are still missing. Asked at the player's end for the first time, and again from
+  /// `settle` on.
   std::function<int()> awaited{};
   LastAnswersOptions last_answers;
   /// How long ago a process was heard on the bus; nothing: never. Foreground programs are left alone, and so
