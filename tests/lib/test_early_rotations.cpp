@@ -9,6 +9,7 @@
 #include <string>
 
 #include "../support/findings.hpp"
+#include "../support/steered_part.hpp"
 #include "diagnosis/explanations/times/early_rotations.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/errors.hpp"
@@ -17,6 +18,7 @@ namespace egocal::test_early_rotations {
 namespace {
 
 using testing::find;
+using testing::on_a_steered_part;
 
 /// A minute on rough ground, at speeds that vary.
 testing::Streams drive_of_speeds(std::uint64_t seed) {
@@ -27,22 +29,6 @@ testing::Streams drive_of_speeds(std::uint64_t seed) {
   options.speed_variation = 0.7;
   options.seed = seed;
   return testing::simulated_drive(options);
-}
-
-/// b on a part of the vehicle that turns about the vertical by `seconds` times the turning rate.
-Trajectory on_a_steered_part(const Trajectory& poses, double seconds) {
-  const DualQuaternion mounting = to_dual_quaternion(testing::T_vehicle_b);
-  Trajectory result = poses;
-  for (std::size_t i = 1; i + 1 < poses.size(); ++i) {
-    const DualQuaternion before = poses[i - 1].pose * conjugate(mounting),
-                         after = poses[i + 1].pose * conjugate(mounting);
-    const double time = 1e-6 * static_cast<double>(poses[i + 1].time_us - poses[i - 1].time_us);
-    const double rate = rotation_log(to_pose(conjugate(before) * after).rotation).z() / time;
-    const DualQuaternion aside =
-        to_dual_quaternion(Pose{rotation_exp({0, 0, seconds * rate}), Eigen::Vector3d::Zero()});
-    result[i].pose = canonical_sign(normalized(poses[i].pose * conjugate(mounting) * aside * mounting));
-  }
-  return result;
 }
 
 detail::EarlyRotations seen(const testing::Streams& streams, Side side) {

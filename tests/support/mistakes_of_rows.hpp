@@ -18,6 +18,7 @@
 #include "mistakes_of_clocks.hpp"
 #include "mistakes_of_frames.hpp"
 #include "mistakes_of_units.hpp"
+#include "steered_part.hpp"
 
 namespace egocal::testing {
 
@@ -105,11 +106,17 @@ inline std::vector<Mistake> mistakes_in_rows() {
          for (Trajectory* const stream : {&s.a, &s.b})
            for (StampedPose& pose : *stream) pose.time_us /= 1000;
        }},
+      {"between the rows of b, those of another odometry", "mixed_frames_b",
+       of_b([](const Trajectory& right) { return with_another_sender(right, 1); })},
       {"b in bursts of five", "stamps_b", of_b([](const Trajectory& right) { return buffered(right, 5); })},
-      {"b knocked, both inverted", "inverted_both", [=](Streams& s) {
+      {"b knocked, both inverted", "inverted_both",
+       [=](Streams& s) {
          s.a = inverted(s.a);
          s.b = inverted(knocked(s.b, 0.5, bump));
-       }}};
+       }},
+      // the turn of the part hides in the lever arm or looks like a clock: other codes stand beside this one
+      {"b on a part that is steered", "late_positions_b",
+       of_b([](const Trajectory& right) { return on_a_steered_part(right, 0.2); }), true}};
 }
 
 }  // namespace egocal::testing
