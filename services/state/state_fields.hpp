@@ -102,8 +102,8 @@ void fields(auto& archive, services::Is<Agreement> auto& value) {
 }
 
 void fields(auto& archive, services::Is<RobustStatistics::State> auto& value) {
-  auto& [blocks, waiting, agreement, in_a_row, next_look, given] = value;
-  archive(blocks, waiting, agreement, in_a_row, next_look, given);
+  auto& [blocks, waiting, agreement, in_a_row, doublings, next_look, given] = value;
+  archive(blocks, waiting, agreement, in_a_row, doublings, next_look, given);
 }
 
 /// Classes whose whole state is a struct.

@@ -11,6 +11,8 @@ namespace egocal {
 
 namespace {
 
+constexpr std::uint64_t most_doublings = 32;  // of a run: longer than any drive
+
 Statistics of_one(const MotionPair& pair) {
   Statistics statistics;
   statistics.add(pair);
@@ -46,11 +48,16 @@ void RobustStatistics::add(const MotionPair& pair, const Problem& problem, int o
     state_.blocks.add(pair);
     state_.in_a_row = 0;
   }
-  if (state_.in_a_row >= options.suspicious_run && std::has_single_bit(state_.in_a_row))
-    look(problem, overlap, options);
+  if (state_.in_a_row < options.suspicious_run << state_.doublings || !std::has_single_bit(state_.in_a_row))
+    return;
+  const std::uint64_t doublings = state_.doublings;
+  look(problem, overlap, options);
+  const bool came_back = state_.waiting.empty() || state_.waiting.back().end_us != pair.end_us;
+  state_.doublings = came_back ? 0 : std::min<std::uint64_t>(doublings + 1, most_doublings);
 }
 
 void RobustStatistics::look(const Problem& problem, int overlap, const RobustOptions& options) {
+  if (state_.doublings > 0) --state_.doublings;
   state_.next_look = state_.given + std::max<std::uint64_t>(1, state_.given / options.look_part);
   const auto& blocks = state_.blocks.state().blocks;
   std::vector<Statistics> parts;

@@ -17,7 +17,9 @@ struct RobustOptions {
   /// memory and the time of a look: 128 parts beside 64 blocks.
   std::size_t most_waiting = 128;
   /// The consensus is looked for again after this many pairs in a row that disagree, and at every doubling:
-  /// four outliers in a row are rare among single wrong poses, which affect two motions each.
+  /// four outliers in a row are rare among single wrong poses, which affect two motions each. Where they are
+  /// still outliers then, the next run has to be twice as long, until the drive has grown: of a mount that
+  /// turned half-way, run after run contradicts the rest (1500 looks in 20,000 poses).
   std::uint64_t suspicious_run = 4;
   /// And after this part of the pairs more (an eighth): looking stays a constant part of the work.
   std::uint64_t look_part = 8;
@@ -36,6 +38,7 @@ class RobustStatistics {
     std::deque<MotionPair> waiting;
     std::optional<Agreement> agreement;
     std::uint64_t in_a_row = 0;    ///< newest pairs that all disagreed
+    std::uint64_t doublings = 0;   ///< of the run after which the consensus is looked for
     std::uint64_t next_look = 16;  ///< pairs given at which the consensus is looked for again
     std::uint64_t given = 0;       ///< pairs
   };
