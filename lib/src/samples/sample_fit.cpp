@@ -77,6 +77,14 @@ Determined determined(const Statistics& statistics, const SampleNoise& noise, do
   return result;
 }
 
+/// The cost (18) of the weighted sums, and of an X that is far away: 4 |dual|^2 is the squared distance.
+Matrix8d cost_with_prior(const Statistics& statistics, const SampleNoise& noise, double farthest) {
+  Matrix8d Q = cost_matrix(statistics, balance_of(noise));
+  Q.bottomRightCorner<4, 4>().diagonal().array() +=
+      noise.rotation / (statistics.weight * farthest * farthest);
+  return Q;
+}
+
 struct SumOfSquares {
   double rotation = 0, translation = 0;  ///< [rad^2], [m^2]
   double dof_rotation = 0, dof_translation = 0;
@@ -209,7 +217,7 @@ class Rounds {
   bool once(bool exact) {
     const double length = set_.length();
     fit_.statistics = exact ? centred(set_, chosen_, signs_, origin_) : sums_.centred(origin_);
-    fit_.X = solve_dual(cost_matrix(fit_.statistics, balance_of(fit_.noise))).q;
+    fit_.X = solve_dual(cost_with_prior(fit_.statistics, fit_.noise, settings_.farthest * length)).q;
     fit_.Y = exact ? mean_target(set_, chosen_, signs_, fit_.X) : sums_.mean_target(fit_.X);
     SumOfSquares squares = squares_of_forms(fit_.statistics, fit_.X);
     const double n = static_cast<double>(chosen_.size()), units = static_cast<double>(units_);
