@@ -3,6 +3,8 @@
 #include "pairing/pair_session.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 
 #include "egocal/bus/check.hpp"
 #include "egocal/bus/convert.hpp"
@@ -102,6 +104,16 @@ void PairSession::release_held(std::vector<MotionOut>& out) {
   const std::uint64_t solved = scale_ ? scale_->solved_motions() : 0;
   hand_out(scale_ ? scale_->release_held() : drive_.release_held(), out);
   if (scale_ && scale_->solved_motions() != solved) fresh_ = true;
+}
+
+std::string PairSession::without_clock() const {
+  if (state_.session < 0 || paused() || pairing().time_offset()) return "";
+  const std::string text = config_.a + " -> " + config_.b + ": no motion yet, as time_offset = \"auto\" ";
+  if (pairing().estimated_time_offset())
+    return text + "finds no offset of the clocks that it trusts: the sensors hardly turn, or not together";
+  const double seconds = options_.clock.first + options_.clock.delay;  // a slow stream takes longer
+  return text + "compares the clocks after " + std::to_string(std::llround(seconds)) +
+         " s or more of both streams; a shorter drive: egocal solve --time-offset auto";
 }
 
 void PairSession::hand_out(const std::vector<MotionPair>& pairs, std::vector<MotionOut>& out) {

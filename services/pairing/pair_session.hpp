@@ -57,6 +57,8 @@ class PairSession {
   void release_held(std::vector<MotionOut>& out);
   /// Whether there are such poses.
   bool can_release() const { return state_.session >= 0 && !paused() && pairing().can_release(); }
+  /// Why poses that have come gave no motion: the clocks are not compared yet. One line; empty otherwise.
+  std::string without_clock() const;
   /// The next pose begins a new session.
   void reset();
   void pause(bool paused) { state_.paused = paused; }

@@ -239,19 +239,26 @@ void Pairing::watch_gaps() {
 }
 
 /// While the clocks are compared poses are held back, and each pose that comes then releases a few. Where
-/// none comes, at the end of a log, they would wait for ever.
+/// none comes, at the end of a log, they would wait for ever. A drive that ends before they are compared is
+/// reported at once: `egocal up` ends soon after its log.
 void Pairing::release_what_silence_holds(std::int64_t now_us) {
   const std::vector<PairSession>& pairs = std::as_const(accumulation_).pairs();
+  const auto silent = [&](const std::string& sensor) {
+    for (std::size_t k = 0; k < arrivals_.size(); ++k)
+      if (accumulation_.sensor(k).name == sensor)
+        return now_us - arrivals_[k].heard_at_us > options_.silence_us;
+    return true;
+  };
+  std::string without_clock;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto silent = [&](const std::string& sensor) {
-      for (std::size_t k = 0; k < arrivals_.size(); ++k)
-        if (accumulation_.sensor(k).name == sensor)
-          return now_us - arrivals_[k].heard_at_us > options_.silence_us;
-      return true;
-    };
-    if (pairs[i].can_release() && silent(pairs[i].config().a) && silent(pairs[i].config().b))
-      feed({Input::Kind::silent, static_cast<std::uint16_t>(i)});
+    if (!silent(pairs[i].config().a) || !silent(pairs[i].config().b)) continue;
+    if (pairs[i].can_release()) feed({Input::Kind::silent, static_cast<std::uint16_t>(i)});
+    if (without_clock.empty()) without_clock = pairs[i].without_clock();
   }
+  if (without_clock == without_clock_) return;
+  without_clock_ = without_clock;
+  show_state();
+  if (leads()) heartbeat_.publish();
 }
 
 /// Puts the state of this process into its status: waiting, paused or running, and its error.
@@ -264,9 +271,10 @@ void Pairing::show_state() {
   heartbeat_.set_state(!leads() ? bus::State::waiting : paused ? bus::State::paused : bus::State::running);
   heartbeat_.set_error(senior ? "another process has this name and continues: pid " +
                                     std::to_string(senior->pid) + " on " + senior->host
-                       : !save_error_.empty() ? save_error_
-                       : saved_               ? saved_->refused()
-                                              : "");
+                       : !save_error_.empty()    ? save_error_
+                       : !without_clock_.empty() ? without_clock_
+                       : saved_                  ? saved_->refused()
+                                                 : "");
 }
 
 void Pairing::every_second() {

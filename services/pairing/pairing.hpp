@@ -84,6 +84,7 @@ class Pairing {
   bool caught_up_ = true;     // by the last batch
   std::int64_t sent_ = 0;     // problems
   std::string save_error_;
+  std::string without_clock_;  ///< a pair that is silent and has no motion yet, see PairSession
   std::int64_t save_again_mono_us_ = 0;
   int unacknowledged_ = 0;
   std::int64_t acknowledged_mono_us_ = 0, acknowledging_us_ = 0;  // the last time, and how long it took

@@ -38,6 +38,9 @@ class SilentPairing : public ::testing::Test {
         [this](const problem_t& problem, const bus::Arrival&) { newest_ = problem; });
     others_.subscribe<motion_pair_t>(bus::motion_channel("a", "b"),
                                      [this](const motion_pair_t&, const bus::Arrival&) { ++motions_; });
+    others_.subscribe<status_t>(bus::status_channel, [this](const status_t& status, const bus::Arrival&) {
+      last_error_ = status.last_error;
+    });
   }
 
   static bus::Rig rig() {
@@ -75,6 +78,7 @@ class SilentPairing : public ::testing::Test {
   Pairing pairing_;
   problem_t newest_{};
   int motions_ = 0;
+  std::string last_error_;
 };
 
 TEST_F(SilentPairing, WhatWasHeldBackAtTheEndOfALogCounts) {
@@ -84,6 +88,25 @@ TEST_F(SilentPairing, WhatWasHeldBackAtTheEndOfALogCounts) {
   stay_silent();
   EXPECT_GE(newest_.seq, static_cast<std::int64_t>(streams.a.size()) - 10);
   EXPECT_EQ(newest_.seq, motions_);
+}
+
+// It ended without a motion and without a word. `egocal up` waits for 1.5 s after its log.
+TEST_F(SilentPairing, AnEndBeforeTheClocksAreComparedIsReported) {
+  const testing::Streams streams = drive(14);
+  const std::size_t end = 9 * rate;
+  send(streams, 0, end, 20ms);
+  EXPECT_EQ(last_error_, "");
+  test::run_for(clock_, {&loop_, &others_}, 1s);
+  EXPECT_EQ(last_error_,
+            "a -> b: no motion yet, as time_offset = \"auto\" compares the clocks after 12 s or more of both "
+            "streams; a shorter drive: egocal solve --time-offset auto");
+  EXPECT_EQ(motions_, 0);
+  send(streams, end, end + 50, 20ms);
+  EXPECT_EQ(last_error_, "") << "the drive goes on";
+  send(streams, end + 50, streams.a.size(), 20ms);
+  stay_silent();
+  EXPECT_EQ(last_error_, "");
+  EXPECT_GE(newest_.seq, static_cast<std::int64_t>(streams.a.size()) - 10);
 }
 
 // Played so slowly that there is a silence after each pose.
