@@ -22,7 +22,8 @@ TEST_F(SavedStates, OfAnotherRigAreRefused) {
   const Accumulation accumulation = saved.restore();
   EXPECT_FALSE(saved.restored());
   EXPECT_EQ(accumulation.pairs()[0].session(), -1);
-  EXPECT_THAT(saved.refused(), HasSubstr("another rig or version: it has 'pair left right"));
+  EXPECT_THAT(saved.refused(), HasSubstr("another rig or version: it has 'pair left right: stride auto', "
+                                         "expected 'pair left right: stride 7'"));
   EXPECT_TRUE(std::filesystem::exists(file + ".refused"));
 }
 
