@@ -198,7 +198,9 @@ Option App::add_option_function(const std::string& name, std::function<void(cons
 }
 
 Option App::add_flag(const std::string& name, bool& value, const std::string& help) {
-  return Option(app_->add_flag(name, value, help));
+  CLI::Option* const flag = app_->add_flag(name, value, help);
+  flag->check(no_value());
+  return Option(flag);
 }
 
 App App::add_subcommand(const std::string& name, const std::string& help) {

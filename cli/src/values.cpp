@@ -50,6 +50,14 @@ CLI::Validator a_value() {
       "");
 }
 
+CLI::Validator no_value() {
+  return CLI::Validator(
+      [](std::string& text) {
+        return text == "true" || text == "false" ? std::string() : "expected no value, got '" + text + "'";
+      },
+      "");
+}
+
 CLI::Validator any_number() {
   return CLI::Validator(
       [](std::string& text) {

@@ -126,6 +126,19 @@ TEST_F(Io, LinesMayEndAsThoseOfOldMacs) {
   expect_error("1 0 0 0 0 0 0 1\r2 0 0 zero 0 0 0 1\r", ":2: field 4 (tz): expected a number, got 'zero'");
 }
 
+// They held "no data": the header and the rows were one line, a comment.
+TEST_F(Io, AHeaderMayBeAboveRowsThatEndAsThoseOfOldMacs) {
+  const std::string rows = "1 1 2 3 0 0 0 1\r2 4 5 6 0 0 0 1\r3 7 8 9 0 0 0 1\r";
+  for (const char* header :
+       {"# comment\n", "time tx ty tz qx qy qz qw\n", "# comment\r\n", "# one\r# two\n"}) {
+    const Trajectory found = read_trajectory(file("b.tum", header + rows));
+    ASSERT_EQ(found.size(), 3u) << header;
+    EXPECT_EQ(found.back().time_us, 3'000'000);
+    EXPECT_EQ(to_pose(found.back().pose).translation.z(), 9);
+  }
+  expect_error("# comment\n1 0 0 0 0 0 0 1\r2 0 0 zero 0 0 0 1\r", ":3: field 4 (tz): expected a number");
+}
+
 TEST_F(Io, BadTrajectoriesGetOneClearLine) {
   const std::string good = "1 0 0 0 0 0 0 1\n";
   expect_error("", "holds no data");

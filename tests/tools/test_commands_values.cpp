@@ -87,6 +87,15 @@ TEST_F(Commands, AnEmptyValueIsNoValue) {
 }
 
 // `simulate --out --poses 30` made a folder named --poses
+TEST_F(Commands, AFlagHasNoValue) {
+  ASSERT_EQ(egocal("simulate --poses 60 --out " + path("d")).code, 0);
+  const std::string drive = "solve " + path("d/lidar.tum") + " " + path("d/camera.tum");
+  for (const char* value : {"3x", "3", "-1", "x"})
+    expect_refusal(egocal(drive + " --json=" + value), 2,
+                   std::string("--json: expected no value, got '") + value + "'");
+  EXPECT_EQ(egocal(drive + " --json=true").out.substr(0, 1), "{");
+}
+
 TEST_F(Commands, TheNameOfAnOptionIsNoValue) {
   for (const char* option : {"--help", "--poses"})
     expect_refusal(egocal("simulate --out " + std::string(option)), 2,

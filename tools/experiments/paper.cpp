@@ -73,11 +73,11 @@ std::optional<std::string> kept(const std::string& file, const std::string& key)
 
 std::string reproduce_paper(const PaperOptions& options,
                             const std::function<void(const std::string&, double)>& progress) {
+  const PaperData data = paper_data(options);  // before the folder: what is refused leaves nothing behind
   const std::string folder = options.out + "/parts";
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   if (failure) throw Error(folder + ": " + failure.message());
-  const PaperData data = paper_data(options);
   std::string page = head;
   double done = 0;
   for (const Part& part : parts) {

@@ -130,7 +130,7 @@ char separator_of(const Sniffed& sniffed, const std::string& columns) {
 }
 
 Sniffed sniff(ByteSource& source) {
-  const char line_end = line_end_of(source);
+  const std::string_view line_ends = line_ends_of(source);
   const ByteSpan bytes = source.peek(sniffed_bytes);
   const bool all = bytes.size() < sniffed_bytes;
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -142,10 +142,10 @@ Sniffed sniff(ByteSource& source) {
   Sniffed sniffed;
   long number = 0;
   while (!text.empty()) {
-    const std::size_t end = text.find(line_end);
-    if (end == std::string_view::npos && !all && !sniffed.data.empty()) break;  // a part of a line
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    const LineSize size = first_line(text, line_ends);
+    if (!size.terminated && !all && !sniffed.data.empty()) break;  // a part of a line
+    const std::string_view line = text.substr(0, size.size);
+    text.remove_prefix(size.whole);
     ++number;
     if (is_blank(line)) continue;
     const char first = line[line.find_first_not_of(" \t")];

@@ -2,14 +2,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <string_view>
 
 #include "io/bytes/byte_source.hpp"
 
 namespace egocal::detail {
 
-/// By what the lines of a text end, from its beginning on: LF (also CR LF), or CR where there is no LF.
-char line_end_of(ByteSource& source);
+/// By which of these characters the lines of a text end, from its beginning on: LF (also CR LF); CR where
+/// there is no LF; either where more lines end by a CR than by an LF: a header was put above rows that end by
+/// CR.
+std::string_view line_ends_of(ByteSource& source);
+
+/// The first line of a text. Without an end, `whole` is its size.
+struct LineSize {
+  std::size_t size = 0, whole = 0;  ///< [bytes] without and with the end, which may be CR LF
+  bool terminated = false;
+};
+LineSize first_line(std::string_view text, std::string_view line_ends);
 
 /// Reads the lines of a text file one at a time, without copying them. A byte order mark and line ends are
 /// removed.
@@ -27,7 +37,7 @@ class LineReader {
   ByteSource& source_;
   std::size_t pending_ = 0;  ///< bytes of the line handed out last
   long number_ = 0;
-  char line_end_ = '\n';
+  std::string_view line_ends_;
   bool terminated_ = true;
 };
 
