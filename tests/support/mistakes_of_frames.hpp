@@ -132,4 +132,19 @@ inline Trajectory seen_from(const Trajectory& trajectory, const DualQuaternion& 
   return result;
 }
 
+/// After each `every` rows, one of a second odometry on the same vehicle: from its own mounting and origin.
+inline Trajectory with_another_sender(const Trajectory& trajectory, std::size_t every) {
+  const DualQuaternion origin = to_dual_quaternion({rotation_exp({0, 0, 2.1}), {6, -4, 0}}),
+                       mounting = to_dual_quaternion({rotation_exp({0.3, -0.2, 1}), {0.4, 0.3, -0.2}});
+  Trajectory result;
+  for (std::size_t i = 0; i + 1 < trajectory.size(); ++i) {
+    const StampedPose& here = trajectory[i];
+    result.push_back(here);
+    if (i % every != 0) continue;
+    const std::int64_t later = 2 * (trajectory[i + 1].time_us - here.time_us) / 5;
+    result.push_back({here.time_us + later, canonical_sign(normalized(origin * here.pose * mounting))});
+  }
+  return result;
+}
+
 }  // namespace egocal::testing

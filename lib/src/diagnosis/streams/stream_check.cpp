@@ -10,6 +10,7 @@
 #include "diagnosis/streams/flat.hpp"
 #include "diagnosis/streams/rounded_copy.hpp"
 #include "diagnosis/streams/step_size.hpp"
+#include "diagnosis/streams/two_senders.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/pairing/match_samples.hpp"
@@ -143,6 +144,9 @@ std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, con
     if (std::optional<Finding> missing =
             which == 'a' ? without_part('a', a, b, options) : without_part('b', b, a, options))
       findings.push_back(*std::move(missing));
+    if (std::optional<Finding> mixed = which == 'a' ? two_senders(Side::a, a, b, options.metres)
+                                                    : two_senders(Side::b, b, a, options.metres))
+      findings.push_back(*std::move(mixed));
   }
   check('a', steps.frozen_a, steps.travelled_a);
   check('b', steps.frozen_b, steps.travelled_b);

@@ -39,8 +39,8 @@ struct StreamCheckOptions {
 /// Certain: the poses of both sensors are the same.
 Finding same_stream();
 
-/// missing_a, missing_b (no positions or no rotations), flat_a, flat_b, frozen_a, frozen_b, same_stream
-/// (uncertain where it was rounded), samples.
+/// missing_a, missing_b (no positions or no rotations), flat_a, flat_b, frozen_a, frozen_b, mixed_frames_a,
+/// mixed_frames_b (of two odometries), same_stream (uncertain where it was rounded), samples.
 std::vector<Finding> check_streams(const Trajectory& a, const Trajectory& b, const Instants& instants,
                                    const StreamCheckOptions& options = {});
 
