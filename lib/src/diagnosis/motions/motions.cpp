@@ -172,6 +172,14 @@ Instants Instants::through(std::size_t smooth_poses) const {
   return other;
 }
 
+Instants Instants::without(const std::vector<bool>& wrong) const {
+  Instants others = *this;
+  others.places_.clear();
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    if (!wrong[i]) others.places_.push_back(places_[i]);
+  return others;
+}
+
 void Instants::fetch(std::size_t i) const {
   const auto fetch_poses = [](const Trajectory& poses, std::size_t from, std::size_t to) {
     constexpr std::size_t line = 64;  // bytes that come at once

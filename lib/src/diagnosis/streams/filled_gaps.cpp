@@ -107,24 +107,31 @@ std::optional<Residual> usual_of(const Instants& instants, std::size_t span, con
   return Residual{quantile(rotation, options.usual), quantile(translation, options.usual)};
 }
 
-/// Whether one half of the line contradicts the other stream, where other motions leave little.
+/// Whether the motion from one instant to another contradicts the other stream, where others leave little.
+bool contradicts(const Instants& instants, std::size_t from, std::size_t to, bool turns, const Pose& T,
+                 const FilledGapsOptions& options) {
+  const PairOfMotions motion = motion_between(instants, from, to);
+  const std::optional<Residual> usual = usual_of(instants, to - from, motion, T, options);
+  if (!usual) return false;
+  const Residual left = motion.left(T);
+  const bool turns_otherwise =
+      !turns && left.rotation > std::max(options.times * usual->rotation, options.least_left);
+  return turns_otherwise || left.translation > std::max(options.times * usual->translation,
+                                                        options.least_left * motion.length());
+}
+
+/// Whether one half of the line contradicts the other stream, and not because of a single wrong pose: neither
+/// at its own end outside, nor in the middle.
 bool contradicts(const Instants& instants, const Line& line, const Pose& T,
                  const FilledGapsOptions& options) {
   const std::size_t from = instant_at(instants, line.begin), to = instant_at(instants, line.end);
   if (to >= instants.size() || to < from + 2) return false;
   const std::size_t middle = from + (to - from) / 2;
-  for (const auto& [begin, end] : {std::pair{from, middle}, std::pair{middle, to}}) {
-    const PairOfMotions motion = motion_between(instants, begin, end);
-    const std::optional<Residual> usual = usual_of(instants, end - begin, motion, T, options);
-    const Residual left = motion.left(T);
-    if (!usual) continue;
-    const bool turns_otherwise =
-        !line.turns && left.rotation > std::max(options.times * usual->rotation, options.least_left);
-    if (turns_otherwise ||
-        left.translation > std::max(options.times * usual->translation, options.least_left * motion.length()))
-      return true;
-  }
-  return false;
+  const auto both = [&](std::size_t begin, std::size_t end) {
+    return contradicts(instants, begin, end, line.turns, T, options);
+  };
+  if (both(from, middle) && (from == 0 || both(from - 1, middle)) && both(from, middle + 1)) return true;
+  return both(middle, to) && (to + 1 >= instants.size() || both(middle, to + 1)) && both(middle - 1, to);
 }
 
 }  // namespace

@@ -12,8 +12,8 @@
 
 namespace egocal::detail {
 
-/// Study: tests/lib/test_two_senders.cpp, and seven simulated drives of three machines and two terrains of 30 to 140 s with a
-/// second odometry whose origin is 5 m and any heading away.
+/// Study: tests/lib/test_two_senders.cpp, and seven simulated drives of three machines and two terrains of 30
+/// to 140 s with a second odometry whose origin is 5 m and any heading away.
 struct TwoSendersOptions {
   std::size_t most = 4000;  ///< rows that are looked at, in one run from the middle, for time
   std::size_t least = 20;   ///< rows aside: fewer may be so by chance

@@ -23,6 +23,7 @@
 #include "diagnosis/streams/filled_gaps.hpp"
 #include "diagnosis/streams/one_drive.hpp"
 #include "diagnosis/streams/turning_alike.hpp"
+#include "diagnosis/streams/wrong_poses.hpp"
 #include "diagnosis/verdict/turning_noise.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
@@ -83,14 +84,21 @@ std::optional<UnexplainedPart> contradicting_tenths(const Fit& fit, std::size_t 
   return UnexplainedPart{first->begin, std::prev(last)->end};
 }
 
-/// What is wrong with a part of the drive that contradicts the answer of the rest.
-std::optional<Finding> of_a_part(const Evidence& evidence, const Fit& fit, bool tenths_too,
-                                 const DiagnosisOptions& options) {
+/// What is wrong with a part of the drive that contradicts the answer of the rest. kept: without wrong poses,
+/// which may spoil most motions of a tenth.
+std::optional<Finding> of_a_part(const Evidence& evidence, const Instants& kept, const Answered& answered,
+                                 bool tenths_too, const DiagnosisOptions& options) {
   const Explained& given = evidence.given.explained;
-  std::optional<UnexplainedPart> part = unexplained_part(given.motions, given.fit.T);
+  const Motions motions =
+      kept.size() < evidence.instants.size()
+          ? motions_of(kept, {}, {}, evidence.stride, options.motions.most, options.motions)
+          : given.motions;
+  std::optional<UnexplainedPart> part = unexplained_part(motions, given.fit.T);
   if (!part && tenths_too)
-    part = contradicting_tenths(fit, given.motions.all.size(), options.tolerance_translation);
-  if (!part) return std::nullopt;
+    part = contradicting_tenths(fit_at(motions, to_pose(answered.T_a_b), 0, options.motions),
+                                motions.all.size(), options.tolerance_translation);
+  if (!part || spoiled_by_wrong_poses(motions, to_pose(given.fit.T), part->begin, part->end))
+    return std::nullopt;
   if (std::optional<Finding> scale = part_of_other_scale(given, part->begin, part->end, options))
     return scale;
   return unexplained(*part);
@@ -158,17 +166,17 @@ std::optional<Finding> turning_apart(const Evidence& evidence, const Answered& a
 }
 
 /// Where nothing else is found.
-std::optional<Finding> last_of_all(const Evidence& evidence, const Answered& answered,
+std::optional<Finding> last_of_all(const Instants& instants, int stride, const Answered& answered,
                                    const MovedMount& moved, const DiagnosisOptions& options) {
   std::optional<Finding> last;
   if (answered.problem.mode != Mode::planar) {
-    last = back_and_forth(evidence.instants, answered, options);
-    if (!last) last = swaying_mount(evidence.instants, answered, options);
-    if (!last) last = following_mount(evidence.instants, evidence.stride, answered, options);
+    last = back_and_forth(instants, answered, options);
+    if (!last) last = swaying_mount(instants, answered, options);
+    if (!last) last = following_mount(instants, stride, answered, options);
   }
   if (!last)
     last = contradicting_parts_finding(
-        contradicting_parts(evidence.instants, evidence.stride, to_pose(answered.T_a_b), options.motions));
+        contradicting_parts(instants, stride, to_pose(answered.T_a_b), options.motions));
   return last ? last : contradicting_times(moved.unexplained, options);
 }
 
@@ -197,7 +205,8 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
   const auto explains_more = [&wrong](double improvement) {
     return wrong.empty() || improvement > wrong.front().improvement;
   };
-  MovedMount moved = moved_mount(evidence.instants, answered, options);
+  const Instants kept = without_wrong_poses(evidence.instants, to_pose(answered.T_a_b));
+  MovedMount moved = moved_mount(kept, answered, options);
   std::vector<Finding>& moves = moved.findings;
   // where a stream is wrong, parts of the drive with other speeds and headings have other extrinsics
   if (!moves.empty() && !wrong.empty() && !explains_more(std::exp(gain_of_parts(evidence, moves, options))))
@@ -226,7 +235,7 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
       findings.insert(findings.begin(), *std::move(scale));
       return;
     }
-  if (std::optional<Finding> part = of_a_part(evidence, fit, wrong.empty(), options)) {
+  if (std::optional<Finding> part = of_a_part(evidence, kept, answered, wrong.empty(), options)) {
     findings.push_back(*std::move(part));
     return;
   }
@@ -234,7 +243,7 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     findings.insert(findings.begin(), wrong.begin(), wrong.end());
     return;
   }
-  if (std::optional<Finding> last = last_of_all(evidence, answered, moved, options))
+  if (std::optional<Finding> last = last_of_all(kept, evidence.stride, answered, moved, options))
     findings.insert(findings.begin(), *std::move(last));
 }
 

@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/streams/wrong_poses.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/motions/robust_fit.hpp"
+#include "diagnosis/motions/standing_still.hpp"
+#include "statistics/median.hpp"
+#include "statistics/quantile.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+class WrongPoses {
+ public:
+  WrongPoses(const Instants& instants, const Pose& T_a_b, const WrongPosesOptions& options)
+      : options_(options), T_a_b_(T_a_b) {
+    poses_.reserve(instants.size());
+    for (std::size_t i = 0; i < instants.size(); ++i) {
+      const PosePair pair = instants.at(i);
+      poses_.emplace_back(to_pose(pair.a), to_pose(pair.b));
+    }
+    for (std::size_t steps = 1; steps <= options.most_in_a_row + 1; ++steps)
+      usual_.push_back(usual_over(steps));
+  }
+
+  /// Per instant.
+  std::vector<bool> found() const {
+    std::vector<bool> wrong(poses_.size(), false);
+    std::size_t good = 0;
+    while (good + 2 < poses_.size()) {
+      const std::size_t next = agrees(good, good + 1) ? good + 1 : past(good);
+      std::fill(wrong.begin() + static_cast<std::ptrdiff_t>(good) + 1,
+                wrong.begin() + static_cast<std::ptrdiff_t>(next), true);
+      good = next;
+    }
+    return wrong;
+  }
+
+ private:
+  /// What the answer leaves of the motion from instant i to k.
+  Residual left(std::size_t i, std::size_t k) const {
+    const auto& [a_i, b_i] = poses_[i];
+    const auto& [a_k, b_k] = poses_[k];
+    const Pose rest = inverse(inverse(a_i) * a_k * T_a_b_) * (T_a_b_ * (inverse(b_i) * b_k));
+    return {rotation_log(rest.rotation).norm(), rest.translation.norm()};
+  }
+
+  Residual usual_over(std::size_t steps) const {
+    std::vector<double> rotations, translations;
+    for (std::size_t i = 0; i + steps < poses_.size(); ++i) {
+      const Residual residual = left(i, i + steps);
+      rotations.push_back(residual.rotation);
+      translations.push_back(residual.translation);
+    }
+    return {std::max(quantile(std::move(rotations), options_.usual), options_.rounding),
+            std::max(quantile(std::move(translations), options_.usual), options_.rounding)};
+  }
+
+  bool agrees(std::size_t i, std::size_t k) const {
+    const Residual residual = left(i, k);
+    const Residual& usual = usual_[k - i - 1];
+    return residual.rotation <= options_.times * usual.rotation &&
+           residual.translation <= options_.times * usual.translation;
+  }
+
+  /// The next instant that agrees with this one, and goes on; the very next one where none does.
+  std::size_t past(std::size_t good) const {
+    for (std::size_t next = good + 2; next <= good + 1 + options_.most_in_a_row; ++next)
+      if (next < poses_.size() && agrees(good, next) && goes_on(next)) return next;
+    return good + 1;
+  }
+
+  /// Whether some later instant agrees with this one; the next ones may be wrong again.
+  bool goes_on(std::size_t i) const {
+    for (std::size_t next = i + 1; next <= i + 1 + options_.most_in_a_row && next < poses_.size(); ++next)
+      if (agrees(i, next)) return true;
+    return false;
+  }
+
+  const WrongPosesOptions& options_;
+  Pose T_a_b_;
+  std::vector<std::pair<Pose, Pose>> poses_;
+  std::vector<Residual> usual_;  ///< of motions over 1, 2, ... steps
+};
+
+}  // namespace
+
+Instants without_wrong_poses(const Instants& instants, const Pose& T_a_b, const WrongPosesOptions& options) {
+  if (instants.size() > options.most || instants.size() < options.most_in_a_row + 3) return instants;
+  const std::vector<bool> wrong = WrongPoses(instants, T_a_b, options).found();
+  const auto count = static_cast<double>(std::count(wrong.begin(), wrong.end(), true));
+  if (count == 0 || count > options.most_wrong * static_cast<double>(wrong.size())) return instants;
+  return instants.without(wrong);
+}
+
+bool spoiled_by_wrong_poses(const Motions& motions, const Pose& T_a_b, double begin, double end,
+                            const SpoiledPartOptions& options) {
+  const std::vector<bool> rest = at_rest(motions, T_a_b);
+  std::vector<Residual> inside;
+  std::vector<double> rotations, translations;
+  for (std::size_t i = 0; i < motions.all.size(); ++i) {
+    if (rest[i]) continue;
+    const Residual residual = residual_at(motions.all[i], T_a_b);
+    if (motions.all[i].time >= begin && motions.all[i].time <= end) {
+      inside.push_back(residual);
+      continue;
+    }
+    rotations.push_back(residual.rotation);
+    translations.push_back(residual.translation);
+  }
+  if (inside.size() < options.least) return true;
+  if (rotations.empty()) return false;
+  const double rotation = options.agree * median(std::move(rotations)),
+               translation = options.agree * median(std::move(translations));
+  const auto agreeing = std::count_if(inside.begin(), inside.end(), [&](const Residual& residual) {
+    return residual.rotation <= rotation && residual.translation <= translation;
+  });
+  return static_cast<double>(agreeing) > options.most_agreeing * static_cast<double>(inside.size());
+}
+
+}  // namespace egocal::detail

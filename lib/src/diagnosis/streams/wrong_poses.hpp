@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Single wrong poses of a drive whose answer is known: the motions into and out of them contradict it, the
+// motion past them does not.
+#pragma once
+
+#include <cstddef>
+
+#include "diagnosis/motions/motions.hpp"
+#include "egocal/geometry/pose.hpp"
+
+namespace egocal::detail {
+
+struct WrongPosesOptions {
+  std::size_t most = 20000;  ///< instants; a longer drive stays as it is, for time
+  /// Instants in a row that are wrong: two of the slower stream have the same wrong pose of the other one
+  /// beside them, and a third may be wrong by itself.
+  std::size_t most_in_a_row = 5;
+  /// A motion contradicts the answer where its residual is this many times the usual one of its length, which
+  /// is a high quantile: noise with heavy tails (Student, 3) has one beyond in a thousand steps.
+  double times = 4, usual = 0.75;
+  double rounding = 1e-9;  ///< residuals below are digits of files [rad, m]
+  /// Of more wrong instants it is no longer known which are right: three of ten.
+  double most_wrong = 0.3;
+};
+
+/// The instants without the wrong ones. What goes on contradicting, as after a sensor was moved, stays.
+/// Study: tests/lib/test_wrong_poses.cpp, and 40 drives of an independent simulator with wrong poses in a
+/// twentieth of each stream: 26 were contradictory or doubtful without this, 3 are with it.
+Instants without_wrong_poses(const Instants& instants, const Pose& T_a_b,
+                             const WrongPosesOptions& options = {});
+
+struct SpoiledPartOptions {
+  double agree = 3;  ///< residuals of a motion that agrees, as multiples of the median ones of the rest
+  /// Part of the motions that agree nevertheless: wrong poses in a twentieth of each stream, one of which is
+  /// interpolated, spoil a quarter of all motions and may spoil most of a tenth, never all.
+  double most_agreeing = 0.15;
+  std::size_t least = 5;  ///< motions of the part, not at rest: fewer may all be spoiled
+};
+
+/// Whether single wrong poses explain that the motions from begin to end [s] contradict the answer: some of
+/// them agree with it as those of the rest do.
+bool spoiled_by_wrong_poses(const Motions& motions, const Pose& T_a_b, double begin, double end,
+                            const SpoiledPartOptions& options = {});
+
+}  // namespace egocal::detail
