@@ -34,8 +34,8 @@ SimulatedSamples arm(std::size_t samples, std::uint64_t seed, double cone = 45) 
 }
 
 /// The camera turns about one axis that does not tilt (about: up to that many radians), anywhere above the
-/// target.
-SimulatedSamples about_one_axis(std::size_t samples, double about, std::uint64_t seed) {
+/// target. noise: of the arm and the camera, as a multiple of 0.02 deg 0.3 mm and 0.2 deg 2 mm.
+SimulatedSamples about_one_axis(std::size_t samples, double about, std::uint64_t seed, double noise = 1) {
   Random random(seed);
   SimulatedSamples result = arm(1, seed);
   result.samples.clear();
@@ -48,8 +48,8 @@ SimulatedSamples about_one_axis(std::size_t samples, double about, std::uint64_t
     const Pose eye{
         (Rotation(rotation_exp({0, 0, turn})) * down * Rotation(rotation_exp({0, 0, first}))).normalized(),
         {x, y, z}};
-    const Pose hand = testing::noisy(Y * eye * inverse(X), 0.02 * degree, 3e-4, random);
-    const Pose target = testing::noisy(inverse(eye), 0.2 * degree, 2e-3, random);
+    const Pose hand = testing::noisy(Y * eye * inverse(X), noise * 0.02 * degree, noise * 3e-4, random);
+    const Pose target = testing::noisy(inverse(eye), noise * 0.2 * degree, noise * 2e-3, random);
     result.samples.push_back({to_dual_quaternion(hand), to_dual_quaternion(inverse(target))});
   }
   return result;
@@ -74,6 +74,21 @@ TEST(SampleMistakes, ManyAboutOneAxisAreKnownToWhatIsStated) {
       EXPECT_NE(found.verdict, Verdict::good) << n << " " << seed;
       EXPECT_LT(farthest(drawn, found), 5) << n << " " << seed;
     }
+}
+
+/// Noise put the camera kilometres away along the axis, and what that left of the positions was called their
+/// noise, or a contradiction.
+TEST(SampleMistakes, FewAboutOneAxisDoNotContradictEachOther) {
+  for (const std::size_t n : {6u, 8u, 10u})
+    for (const double noise : {1.0, 0.25, 0.01})
+      for (std::uint64_t seed = 1; seed <= 15; ++seed) {
+        const SimulatedSamples drawn = about_one_axis(n, std::numbers::pi, seed, noise);
+        const SampleCalibration found = calibrate_samples(drawn.samples);
+        EXPECT_EQ(found.calibration.verdict, Verdict::incomplete)
+            << n << " " << noise << " " << seed << ": " << found.calibration.reason;
+        EXPECT_LT(found.noise_translation, noise * 0.02) << n << " " << noise << " " << seed;
+        EXPECT_LT(farthest(drawn, found.calibration), 5) << n << " " << noise << " " << seed;
+      }
 }
 
 TEST(SampleMistakes, WithoutTurnsAreTooLittleMotionAndInAWrongOrderAContradiction) {
