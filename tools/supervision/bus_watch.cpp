@@ -81,6 +81,10 @@ std::int64_t mono_ms() {
       .count();
 }
 
+/// A listening process that has listened for less has not heard all pairs: pairing sends its newest problems
+/// again each second.
+constexpr std::int64_t least_heard_ms = 1500;
+
 /// One that was stopped as well.
 void terminate(pid_t pid) {
   kill(pid, SIGTERM);
@@ -202,8 +206,9 @@ void BusWatch::listen(int out, int lines) {
       if (status.host == loop.host()) shared_->heard(status.pid, mono_ms());
     });
     bool waits = false;  // the log has ended
+    const std::int64_t begin_ms = mono_ms();
     loop.every(milliseconds(100), [&] {
-      if (const int asked = shared_->asked; asked > 0) {
+      if (const int asked = shared_->asked; asked > 0 && mono_ms() - begin_ms >= least_heard_ms) {
         if (!std::exchange(waits, true)) listening.begin_to_wait();
         shared_->awaited = listening.awaited();
         shared_->counted = asked;
@@ -254,6 +259,7 @@ BusWatch::BusWatch(const bus::Rig& rig, const std::string& url, const std::strin
 }
 
 void BusWatch::start() {
+  shared_->counted = 0;  // what another one counted says nothing of this one
   Pipe outcome = make_pipe(0), lines = make_pipe(O_NONBLOCK);
   const pid_t parent = getpid();
   pid_ = fork();
@@ -314,6 +320,9 @@ void BusWatch::end() {
 }
 
 Outcome BusWatch::outcome() {
+  if (pid_ < 0)  // a signal to -1 would be one to every process of the user
+    throw Error(
+        "the process that listened to the bus could not be started again: what was calibrated is not known");
   terminate(pid_);
   std::string text;
   char part[4096];

@@ -34,7 +34,7 @@ class WrongPoses {
     std::vector<bool> wrong(poses_.size(), false);
     std::size_t good = 0;
     while (good + 2 < poses_.size()) {
-      const std::size_t next = agrees(good, good + 1) ? good + 1 : past(good);
+      const std::size_t next = keeps(good, good + 1, options_.contradict) ? good + 1 : past(good);
       std::fill(wrong.begin() + static_cast<std::ptrdiff_t>(good) + 1,
                 wrong.begin() + static_cast<std::ptrdiff_t>(next), true);
       good = next;
@@ -62,12 +62,13 @@ class WrongPoses {
             std::max(quantile(std::move(translations), options_.usual), options_.rounding)};
   }
 
-  bool agrees(std::size_t i, std::size_t k) const {
+  /// Whether the motion leaves at most so many times what is usual of its length.
+  bool keeps(std::size_t i, std::size_t k, double times) const {
     const Residual residual = left(i, k);
     const Residual& usual = usual_[k - i - 1];
-    return residual.rotation <= options_.times * usual.rotation &&
-           residual.translation <= options_.times * usual.translation;
+    return residual.rotation <= times * usual.rotation && residual.translation <= times * usual.translation;
   }
+  bool agrees(std::size_t i, std::size_t k) const { return keeps(i, k, options_.agree); }
 
   /// The next instant that agrees with this one, and goes on; the very next one where none does.
   std::size_t past(std::size_t good) const {

@@ -13,12 +13,13 @@ namespace egocal::detail {
 
 struct WrongPosesOptions {
   std::size_t most = 20000;  ///< instants; a longer drive stays as it is, for time
-  /// Instants in a row that are wrong: two of the slower stream have the same wrong pose of the other one
-  /// beside them, and a third may be wrong by itself.
-  std::size_t most_in_a_row = 5;
-  /// A motion contradicts the answer where its residual is this many times the usual one of its length, which
-  /// is a high quantile: noise with heavy tails (Student, 3) has one beyond in a thousand steps.
-  double times = 4, usual = 0.75;
+  /// Instants in a row that are wrong: a wrong pose of the other stream bends the path beside two to four
+  /// instants of the slower one, and the next may be wrong by itself.
+  std::size_t most_in_a_row = 8;
+  /// A motion agrees with the answer where its residual is at most this many times the median of its length,
+  /// and contradicts it from so many times on. Wrong poses spoil up to half of the motions; noise with heavy
+  /// tails (Student, 3) has two beyond in a thousand steps.
+  double agree = 6, contradict = 10, usual = 0.5;
   double rounding = 1e-9;  ///< residuals below are digits of files [rad, m]
   /// Of more wrong instants it is no longer known which are right: three of ten.
   double most_wrong = 0.3;
