@@ -62,14 +62,14 @@ TEST(WrongPoses, AreFoundByTheMotionsPastThem) {
   EXPECT_GE(left, all - 7);
 }
 
-/// A sensor that was moved does not come back; only single poses beside the move may be in its way.
+/// A sensor that was moved does not come back: at most one run of instants beside the move is omitted.
 TEST(WrongPoses, AKnockStays) {
   Streams streams = streams_of(Terrain::free, 4);
   const DualQuaternion knock = to_dual_quaternion(Pose{rotation_exp({0.2, 0.1, 0}), {1, 0, 0.5}});
   for (std::size_t i = 90; i < streams.b.size(); ++i)
     streams.b[i].pose = canonical_sign(normalized(streams.b[i].pose * knock));
   const detail::Instants instants = instants_of(streams);
-  EXPECT_GE(without_wrong_poses(instants, to_pose(streams.T)).size(), instants.size() - 5);
+  EXPECT_GE(without_wrong_poses(instants, to_pose(streams.T)).size(), instants.size() - 8);
 }
 
 }  // namespace
