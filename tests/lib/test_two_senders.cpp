@@ -50,6 +50,28 @@ TEST(TwoSenders, AreNamedWithTheirStream) {
       }
 }
 
+/// Two frames of one body by turns look like two odometries, too, and are named once, as what they are.
+TEST(TwoSenders, TwoFramesOfOneBodyAreNamedOnce) {
+  SimulationOptions options;
+  options.terrain = Terrain::free;
+  options.rate = 20;
+  options.speed = 1;
+  options.poses = 901;
+  options.relative_noise = 0.01;
+  testing::Streams streams = testing::simulated_drive(options);
+  const DualQuaternion other = to_dual_quaternion(Pose{rotation_exp({0, 0, 0.3}), {0.6, 0, 0.1}});
+  for (std::size_t i = 1; i < streams.b.size(); i += 2)
+    streams.b[i].pose = canonical_sign(normalized(streams.b[i].pose * other));
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  std::size_t named = 0;
+  for (const Finding& finding : calibration.findings) {
+    if (finding.code != "mixed_frames_b") continue;
+    ++named;
+    EXPECT_EQ(finding.message.find("two odometries"), std::string::npos) << finding.message;
+  }
+  EXPECT_EQ(named, 1U) << calibration.reason;
+}
+
 /// Positions that are wrong by chance do not go on.
 TEST(TwoSenders, WrongPosesAreNoOtherSender) {
   testing::Streams streams = handheld(3);

@@ -85,8 +85,11 @@ void add_faults_of_poses(const Evidence& evidence, const Answered& answered, con
                                          answered.problem.plane_b, metres, options.planes))
       findings.push_back(std::move(finding));
   // single steps show it; longer motions may all begin and end in one of the frames
-  if (std::optional<Finding> mixed = mixed_frames(evidence.instants, to_pose(answered.T_a_b), metres))
+  if (std::optional<Finding> mixed = mixed_frames(evidence.instants, to_pose(answered.T_a_b), metres)) {
+    // two frames of one body also look like two odometries
+    std::erase_if(findings, [&](const Finding& one) { return one.code == mixed->code; });
     findings.insert(findings.begin(), *std::move(mixed));
+  }
 }
 
 /// That one stream was made from the other explains an answer that is the identity, too.
