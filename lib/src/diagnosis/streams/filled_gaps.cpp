@@ -108,8 +108,8 @@ std::optional<Residual> usual_of(const Instants& instants, std::size_t span, con
 }
 
 /// Whether the motion from one instant to another contradicts the other stream, where others leave little.
-bool contradicts(const Instants& instants, std::size_t from, std::size_t to, bool turns, const Pose& T,
-                 const FilledGapsOptions& options) {
+bool motion_contradicts(const Instants& instants, std::size_t from, std::size_t to, bool turns, const Pose& T,
+                        const FilledGapsOptions& options) {
   const PairOfMotions motion = motion_between(instants, from, to);
   const std::optional<Residual> usual = usual_of(instants, to - from, motion, T, options);
   if (!usual) return false;
@@ -122,16 +122,18 @@ bool contradicts(const Instants& instants, std::size_t from, std::size_t to, boo
 
 /// Whether one half of the line contradicts the other stream, and not because of a single wrong pose: neither
 /// at its own end outside, nor in the middle.
-bool contradicts(const Instants& instants, const Line& line, const Pose& T,
-                 const FilledGapsOptions& options) {
+bool line_contradicts(const Instants& instants, const Line& line, const Pose& T,
+                      const FilledGapsOptions& options) {
   const std::size_t from = instant_at(instants, line.begin), to = instant_at(instants, line.end);
   if (to >= instants.size() || to < from + 2) return false;
   const std::size_t middle = from + (to - from) / 2;
-  const auto both = [&](std::size_t begin, std::size_t end) {
-    return contradicts(instants, begin, end, line.turns, T, options);
+  const auto motion = [&](std::size_t begin, std::size_t end) {
+    return motion_contradicts(instants, begin, end, line.turns, T, options);
   };
-  if (both(from, middle) && (from == 0 || both(from - 1, middle)) && both(from, middle + 1)) return true;
-  return both(middle, to) && (to + 1 >= instants.size() || both(middle, to + 1)) && both(middle - 1, to);
+  if (motion(from, middle) && (from == 0 || motion(from - 1, middle)) && motion(from, middle + 1))
+    return true;
+  return motion(middle, to) && (to + 1 >= instants.size() || motion(middle, to + 1)) &&
+         motion(middle - 1, to);
 }
 
 }  // namespace
@@ -145,7 +147,7 @@ std::optional<Finding> filled_gaps(const Evidence& evidence, const DualQuaternio
                       side == Side::a ? ClockModel{} : evidence.clock);
     std::vector<Line> filled;
     for (const Line& line : lines_in(rows, times, options))
-      if (contradicts(evidence.instants, line, T, options)) filled.push_back(line);
+      if (line_contradicts(evidence.instants, line, T, options)) filled.push_back(line);
     if (filled.empty()) continue;
     const char which = side == Side::a ? 'a' : 'b';
     double seconds = 0;

@@ -24,7 +24,8 @@ struct FilledGapsOptions {
   std::size_t fewest = 10;     ///< of them
 };
 
-/// Finding filled_a or filled_b, certain, with the first such part.
+/// Finding filled_a or filled_b, certain, with the first such part. A line must span three instants: one
+/// instant between its ends is a wrong pose of the other stream as well.
 std::optional<Finding> filled_gaps(const Evidence& evidence, const DualQuaternion& T_a_b,
                                    const FilledGapsOptions& options = {});
 

@@ -96,22 +96,23 @@ Instants without_wrong_poses(const Instants& instants, const Pose& T_a_b, const 
   if (instants.size() > options.most || instants.size() < options.most_in_a_row + 3) return instants;
   const std::vector<bool> wrong = WrongPoses(instants, T_a_b, options).found();
   const auto count = static_cast<double>(std::count(wrong.begin(), wrong.end(), true));
-  if (count == 0 || count > options.most_wrong * static_cast<double>(wrong.size())) return instants;
+  const auto all = static_cast<double>(wrong.size());
+  if (count < options.least_wrong * all || count > options.most_wrong * all) return instants;
   return instants.without(wrong);
 }
 
 bool spoiled_by_wrong_poses(const Motions& motions, const Pose& T_a_b, double begin, double end,
                             const SpoiledPartOptions& options) {
   const std::vector<bool> rest = at_rest(motions, T_a_b);
-  std::vector<Residual> inside;
+  std::vector<std::size_t> inside;
   std::vector<double> rotations, translations;
   for (std::size_t i = 0; i < motions.all.size(); ++i) {
     if (rest[i]) continue;
-    const Residual residual = residual_at(motions.all[i], T_a_b);
     if (motions.all[i].time >= begin && motions.all[i].time <= end) {
-      inside.push_back(residual);
+      inside.push_back(i);
       continue;
     }
+    const Residual residual = residual_at(motions.all[i], T_a_b);
     rotations.push_back(residual.rotation);
     translations.push_back(residual.translation);
   }
@@ -119,10 +120,21 @@ bool spoiled_by_wrong_poses(const Motions& motions, const Pose& T_a_b, double be
   if (rotations.empty()) return false;
   const double rotation = options.agree * median(std::move(rotations)),
                translation = options.agree * median(std::move(translations));
-  const auto agreeing = std::count_if(inside.begin(), inside.end(), [&](const Residual& residual) {
-    return residual.rotation <= rotation && residual.translation <= translation;
-  });
-  return static_cast<double>(agreeing) > options.most_agreeing * static_cast<double>(inside.size());
+  // short motions agree with anything; a wrong pose makes those of its own stream long
+  double agreeing = 0, all = 0;
+  std::size_t in_a_row = 0, longest = 0;
+  for (const std::size_t i : inside) {
+    const Motion& motion = motions.all[i];
+    const double size = std::min(motion.angle_a, motion.angle_b) / motions.rotation +
+                        std::min(motion.t_a.norm(), motion.t_b.norm()) / motions.translation;
+    const Residual residual = residual_at(motion, T_a_b);
+    all += size;
+    const bool agrees = residual.rotation <= rotation && residual.translation <= translation;
+    if (agrees) agreeing += size;
+    in_a_row = agrees ? 0 : in_a_row + 1;
+    longest = std::max(longest, in_a_row);
+  }
+  return agreeing > options.most_agreeing * all && longest <= options.most_in_a_row;
 }
 
 }  // namespace egocal::detail
