@@ -212,6 +212,25 @@ TEST_F(AnswersTest, AVerdictOfAnEarlierPartOfTheDriveIsKnownToBeThat) {
   EXPECT_TRUE(answers.judged_to_the_end(pair_name));
 }
 
+// A busy diagnosis has the newest problem before the poses that it was made of: such a verdict was the last
+// word of `egocal up` on a drive whose mount had moved.
+TEST_F(AnswersTest, AVerdictByOldPosesIsNotOneOfTheEnd) {
+  Answers answers;
+  const problem_t newest = problem(100);
+  answers.hear(newest);
+  answers.hear(answer(newest));
+  const DualQuaternion T_a_b = solve(*bus::to_problem(newest).value, Method::dual).T_a_b;
+  verdict_t late = verdict(Verdict::incomplete, begin_us, 100, T_a_b);
+  late.fit.poses = 60;
+  late.utime_end = newest.utime - 4'000'000;
+  answers.hear(late);
+  EXPECT_FALSE(answers.judged_to_the_end(pair_name));
+  EXPECT_NEAR(answers.seconds_not_judged(pair_name).value_or(-1), 4, 1e-9);
+  late.utime_end = newest.utime - 1'000'000;
+  answers.hear(late);
+  EXPECT_TRUE(answers.judged_to_the_end(pair_name));
+}
+
 // The solvers hang, or were started with another rig.
 TEST_F(AnswersTest, OneOfAnEarlierPartOfTheDriveIsKnownToBeThat) {
   Answers answers;

@@ -164,11 +164,17 @@ std::optional<bus::Departure> Answers::departure(const PairName& pair) const {
   return bus::departure(known->diagnosis.verdict, known->judged, to_pose(best(pair)->checked.answer.T_a_b));
 }
 
+/// The diagnosis judges again where it has poses of so much more of the drive (DiagnosingOptions::pose_step).
+constexpr std::int64_t judged_again_us = 2'500'000;
+
 bool Answers::judged_to_the_end(const PairName& pair) const {
   const Judgement* const known = judgement(pair);
   const auto newest = newest_.find(pair);
-  return known && (newest == newest_.end() ||
-                   (known->session == newest->second.session && known->seq >= newest->second.seq));
+  if (!known || newest == newest_.end()) return known != nullptr;
+  // on a busy machine it may have the newest problem before the poses that this was made of
+  const bool by_old_poses =
+      known->judged.poses > 0 && newest->second.utime - known->judged.end_us > judged_again_us;
+  return known->session == newest->second.session && known->seq >= newest->second.seq && !by_old_poses;
 }
 
 std::optional<double> Answers::seconds_not_judged(const PairName& pair) const {
@@ -176,7 +182,9 @@ std::optional<double> Answers::seconds_not_judged(const PairName& pair) const {
   if (!known) return {};
   const auto newest = newest_.find(pair);
   if (newest == newest_.end() || newest->second.session != known->session) return 0;
-  return to_seconds(std::max<std::int64_t>(0, newest->second.utime - known->utime));
+  const std::int64_t until_us =
+      known->judged.poses > 0 ? std::min(known->utime, known->judged.end_us) : known->utime;
+  return to_seconds(std::max<std::int64_t>(0, newest->second.utime - until_us));
 }
 
 bool Answers::answered_to_the_end(const PairName& pair) const {

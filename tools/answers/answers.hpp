@@ -51,7 +51,7 @@ class Answers {
   const Diagnosis* diagnosis(const PairName& pair) const;
   /// How far the answer that counts is from the one that this verdict calls good; empty: it holds for it.
   std::optional<bus::Departure> departure(const PairName& pair) const;
-  /// That verdict is about the newest problem that was heard.
+  /// That verdict is about the newest problem that was heard, by poses up to its end.
   bool judged_to_the_end(const PairName& pair) const;
   /// How much of the drive came after what that verdict is about [s]; nothing: there is no verdict.
   std::optional<double> seconds_not_judged(const PairName& pair) const;
