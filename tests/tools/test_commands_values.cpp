@@ -119,7 +119,7 @@ TEST_F(Commands, WhatIsMistypedIsNamedWithItsCommand) {
   expect_refusal(egocal("--versoin"), 2, "--versoin is no option of egocal; did you mean --version?");
   expect_refusal(egocal("solve a b --stride"), 2, "--stride: expected a value; see egocal solve --help");
   expect_refusal(egocal("solve a b --goal 1 --goal 2"), 2, "--goal: is given more than once");
-  expect_refusal(egocal("solve a b --planar=maybe"), 2, "--planar: cannot be understood: 'maybe'");
+  expect_refusal(egocal("solve a b --planar=maybe"), 2, "--planar: expected no value, got 'maybe'");
   // the hint is about what is wrong, not about another word
   const Outcome both = egocal("solve a b --goal '' --mthod x");
   EXPECT_EQ(both.code, 2);
