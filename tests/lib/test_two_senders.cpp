@@ -81,7 +81,7 @@ TEST(TwoSenders, WrongPosesAreNoOtherSender) {
   EXPECT_EQ(mixed(calibrate(streams.a, streams.b)), nullptr);
 }
 
-/// One pose that stands for none is no path.
+/// A placeholder for a missing pose is no second path.
 TEST(TwoSenders, APoseForNoneIsNoOtherSender) {
   testing::Streams streams = handheld(4);
   for (std::size_t i = 3; i < streams.b.size(); i += 5) streams.b[i].pose = DualQuaternion{};

@@ -20,7 +20,7 @@ constexpr const char* time_axis = "time [s]";
 constexpr const char* time_without_breaks = "time without breaks [s]";
 constexpr Colour axis_colours[] = {Colour::blue, Colour::vermilion, Colour::green};  // of x, y, z
 
-/// Time along the axis, with a line where a break is left out.
+/// Labels the time axis, and marks with a line where a break is omitted.
 void set_time_axis(const DrawnTime& time, Plot& plot) {
   plot.x.label = time.breaks().empty() ? time_axis : time_without_breaks;
   for (const double at : time.breaks()) plot.markers.push_back({true, at, ""});

@@ -56,8 +56,9 @@ Following following(const std::vector<Aside>& rows, double most_change) {
   Following result;
   for (std::size_t k = 1; k < rows.size(); ++k) {
     // where rows alternate, each is aside for the other path: the last row of its own is two rows back
-    const std::size_t last = rows[k - 1].row + 1 == rows[k].row ? k - 2 : k - 1;
-    if (last >= rows.size()) continue;
+    const bool alternate = rows[k - 1].row + 1 == rows[k].row;
+    if (alternate && k < 2) continue;
+    const std::size_t last = alternate ? k - 2 : k - 1;
     const Aside &now = rows[k], &then = rows[last];
     ++result.pairs;
     if ((now.off() - then.off()).norm() > most_change * now.off().norm()) continue;

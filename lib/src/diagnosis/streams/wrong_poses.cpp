@@ -62,7 +62,7 @@ class WrongPoses {
             std::max(quantile(std::move(translations), options_.usual), options_.rounding)};
   }
 
-  /// Whether the motion leaves at most so many times what is usual of its length.
+  /// Whether the residual of the motion is at most this multiple of the usual one for its length.
   bool keeps(std::size_t i, std::size_t k, double times) const {
     const Residual residual = left(i, k);
     const Residual& usual = usual_[k - i - 1];

@@ -16,9 +16,9 @@ struct WrongPosesOptions {
   /// Instants in a row that are wrong: a wrong pose of the other stream bends the path beside two to four
   /// instants of the slower one, and the next may be wrong by itself.
   std::size_t most_in_a_row = 8;
-  /// A motion agrees with the answer where its residual is at most this many times the median of its length,
-  /// and contradicts it from so many times on. Wrong poses spoil up to half of the motions; noise with heavy
-  /// tails (Student, 3) has two beyond in a thousand steps.
+  /// A motion agrees with the answer where its residual is at most `agree` times the median for its length,
+  /// and contradicts the answer above `contradict` times that. Wrong poses spoil up to half of the motions;
+  /// noise with heavy tails (Student, 3) exceeds `contradict` in two of a thousand steps.
   double agree = 6, contradict = 10, usual = 0.5;
   double rounding = 1e-9;  ///< residuals below are digits of files [rad, m]
   /// Part of the instants that is wrong. Fewer spoil no tenth of a drive, and may be what shows a mistake: 31

@@ -89,10 +89,10 @@ std::optional<UnexplainedPart> contradicting_tenths(const Fit& fit, std::size_t 
 std::optional<Finding> of_a_part(const Evidence& evidence, const Instants& kept, const Answered& answered,
                                  bool tenths_too, const DiagnosisOptions& options) {
   const Explained& given = evidence.given.explained;
-  const Motions motions =
-      kept.size() < evidence.instants.size()
-          ? motions_of(kept, {}, {}, evidence.stride, options.motions.most, options.motions)
-          : given.motions;
+  std::optional<Motions> of_kept;
+  if (kept.size() < evidence.instants.size())
+    of_kept = motions_of(kept, {}, {}, evidence.stride, options.motions.most, options.motions);
+  const Motions& motions = of_kept ? *of_kept : given.motions;
   std::optional<UnexplainedPart> part = unexplained_part(motions, given.fit.T);
   if (!part && tenths_too)
     part = contradicting_tenths(fit_at(motions, to_pose(answered.T_a_b), 0, options.motions),
