@@ -280,6 +280,22 @@ TEST_F(Supervision, WhatWasStoppedIsContinued) {
   EXPECT_EQ(ended(), 0);
 }
 
+// The process that listens to the bus is forked beside the programs: its pid would be another's once it is
+// reaped, and gets signals.
+TEST_F(Supervision, ChildrenOfOthersAreLeftToThem) {
+  Program player = script("player", "sleep 0.5");
+  player.ends_all = true;
+  pid = fork();
+  if (pid == 0) {
+    const pid_t other = fork();
+    if (other == 0) _exit(7);
+    int code = tools::supervise({waiting("one"), player}, options), state = 0;
+    if (waitpid(other, &state, 0) != other || !WIFEXITED(state) || WEXITSTATUS(state) != 7) code = 55;
+    _exit(code);
+  }
+  EXPECT_EQ(ended(), 0);
+}
+
 // Ctrl-Z and fg, or a container that is frozen: the time in which the supervisor did not run is not theirs.
 TEST_F(Supervision, WhoWasStoppedTogetherWithTheSupervisorIsNotBlamed) {
   // of the time in which the supervisor was stopped two seconds count; the rest is room for a busy machine

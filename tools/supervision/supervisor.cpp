@@ -270,16 +270,16 @@ class Supervisor {
     stop_until_continued(foreground, by_key);
   }
 
+  /// Our own programs only: who has forked another child (BusWatch) still has its pid, which must stay that
+  /// child's until it asks for its end.
   void reap() {
-    int status = 0;
-    for (pid_t pid = waitpid(-1, &status, WNOHANG); pid > 0; pid = waitpid(-1, &status, WNOHANG)) {
-      const auto child =
-          std::find_if(children_.begin(), children_.end(), [pid](const Child& c) { return c.pid == pid; });
-      if (child == children_.end()) continue;
-      child->pid = -1;
-      child->silence = {};
-      if (child->program.foreground) terminal_->restore();
-      if (!ending_) ended(*child, status);
+    for (Child& child : children_) {
+      int status = 0;
+      if (child.pid < 0 || waitpid(child.pid, &status, WNOHANG) != child.pid) continue;
+      child.pid = -1;
+      child.silence = {};
+      if (child.program.foreground) terminal_->restore();
+      if (!ending_) ended(child, status);
     }
   }
 
