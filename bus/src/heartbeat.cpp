@@ -111,6 +111,7 @@ void Heartbeat::publish() {
         std::pair{"rejected: malformed datagrams", counts.transport.malformed},
         std::pair{"rejected: incomplete messages", counts.transport.incomplete}})
     if (value > 0) count(name, value);
+  if (announced_.count() > 0) count(std::string(announced_silence_counter), announced_.count());
   message.n_counters = static_cast<std::int32_t>(message.counters.size());
   message.acknowledgements = acknowledgements_;
   message.n_acknowledgements = static_cast<std::int32_t>(acknowledgements_.size());
@@ -118,6 +119,12 @@ void Heartbeat::publish() {
   change_pending_ = false;
   loop_.publish(status_channel, message);
   if (!loop_.network_error().empty()) unsettled_us_ = published_us_;
+}
+
+void Heartbeat::announce_silence(std::chrono::seconds at_most) {
+  announced_ = at_most;
+  publish();
+  announced_ = {};
 }
 
 void Heartbeat::hear(const status_t& status) {

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/bus/process.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 namespace egocal::bus {
 
@@ -44,6 +46,14 @@ std::optional<Role> role_from_name(std::string_view name) {
 
 std::optional<State> state_from_name(std::string_view name) {
   return from_name<State>(states, name);
+}
+
+std::chrono::seconds announced_silence(const status_t& status) {
+  const auto found =
+      std::find_if(status.counters.begin(), status.counters.end(),
+                   [](const counter_t& counter) { return counter.name == announced_silence_counter; });
+  if (found == status.counters.end()) return std::chrono::seconds{0};
+  return std::chrono::seconds{std::clamp<std::int64_t>(found->value, 0, longest_announced_silence.count())};
 }
 
 bool knows_verb(Role role, std::string_view verb) {

@@ -188,6 +188,7 @@ std::string text_lines(const Model& model, Charset charset) {
     const status_t& status = process.status;
     text += clean(status.name, 40) + ": " +
             (!process.known                       ? "unknown (no network)"
+             : process.computes                   ? "computes"
              : process.alive                      ? clean(status.state, 20)
              : process.state == bus::State::ended ? "ended"
                                                   : "GONE") +
@@ -281,6 +282,7 @@ std::string json_line(const Model& model) {
                               {"host", clean(status.host, 200)},
                               {"pid", status.pid},
                               {"alive", process.known ? json(process.alive) : json(nullptr)},
+                              {"computes", process.computes},
                               {"state", clean(status.state, 200)},
                               {"in", process.in},
                               {"out", process.out},

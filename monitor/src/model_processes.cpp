@@ -113,6 +113,8 @@ void Model::on_status(const status_t& message, Now now) {
     }
   }
   process->at = now;
+  process->announced = bus::announced_silence(message);
+  process->computes = false;
   process->status = bounded_status(message);
   process->state = state;
 
@@ -141,13 +143,18 @@ void Model::watch_processes(Now now) {
     if (own) process.at = now;
     process.known = own || !network_away_;
     if (!process.known) process.rate_in = process.rate_out = -1;
-    const std::int64_t heard = std::max(process.at.mono_us, network_mono_us_);
-    if (!process.alive || !process.known || seconds_between(heard, now.mono_us) <= options_.heartbeat_timeout)
-      continue;
-    process.alive = false;
+    const double silent = seconds_between(std::max(process.at.mono_us, network_mono_us_), now.mono_us);
+    process.computes = false;
+    if (!process.alive || !process.known || silent <= options_.heartbeat_timeout) continue;
+    const double announced = std::chrono::duration<double>(process.announced).count();
     process.rate_in = process.rate_out = -1;
+    process.computes = silent <= announced;
+    if (process.computes) continue;
+    process.alive = false;
     note(Severity::bad, process.status.name,
-         "process is gone: no heartbeat for " + rounded(options_.heartbeat_timeout) + " s", now);
+         "process is gone: no heartbeat for " + rounded(std::max(options_.heartbeat_timeout, announced)) +
+             " s",
+         now);
   }
 }
 

@@ -56,7 +56,8 @@ void draw_processes(const Pane& pane, const Model& model, bool title, Charset ch
     if (y >= pane.height()) break;
     const status_t& status = process->status;
     const bool ended = process->state == bus::State::ended;
-    const bool healthy = process->state == bus::State::running || process->state == bus::State::standby;
+    const bool healthy = (process->state == bus::State::running || process->state == bus::State::standby) &&
+                         !process->computes;
     const Style style = !process->known  ? Style::dim
                         : process->alive ? (healthy ? Style::good : Style::warning)
                         : ended          ? Style::dim
@@ -64,10 +65,11 @@ void draw_processes(const Pane& pane, const Model& model, bool title, Charset ch
     int x = pane.text(2, y, !process->known ? "?" : process->alive ? s.alive : s.gone, style) + 1;
     x = pane.text(x, y, pad_right(clean(status.name, 16), 16)) + 1;
     x = pane.text(x, y,
-                  pad_right(ended             ? "ended"
-                            : !process->known ? "unknown"
-                            : process->alive  ? clean(status.state, 8)
-                                              : "GONE",
+                  pad_right(ended               ? "ended"
+                            : !process->known   ? "unknown"
+                            : process->computes ? "computes"
+                            : process->alive    ? clean(status.state, 8)
+                                                : "GONE",
                             8),
                   style) +
         1;

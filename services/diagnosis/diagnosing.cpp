@@ -159,7 +159,9 @@ void Diagnosing::look() {
     turn_ = i + 1;
     hurried_ = hurried;
     const std::int64_t began = loop_.mono_us(), began_processor_us = processor_us();
+    heartbeat_.announce_silence(options_.longest_silence);
     judge(pair);
+    heartbeat_.publish();  // it is over: who is silent from now on is gone
     // processor time, as a busy machine spends most of the elapsed time elsewhere; a simulation has its own
     // clock
     const auto took =

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
 #include <functional>
 
 #include "diagnosis/drive_sample.hpp"
@@ -18,6 +19,10 @@ struct DiagnosingOptions {
   /// deviations stated with the judged answer. Without it a good verdict stood beside answers metres away for
   /// seconds. Study: docs/processes.md, "The diagnosis".
   double far_from_judged = 6;
+  /// Announced before each diagnosis [s], which sends no heartbeat: as long as `egocal up` waits for a
+  /// verdict at the end of a log (LastAnswersOptions). One takes a second at most on a core of its own;
+  /// beside four processes that take the core, more than the 3 s after which a silent process counts as gone.
+  std::chrono::seconds longest_silence{60};
   double least_distance = 1;  ///< [s] between two diagnoses, however quick
   /// A pair without a new problem for this time [s] is judged once without waiting, because the drive has
   /// ended.

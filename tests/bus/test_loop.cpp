@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "egocal/bus/convert.hpp"
@@ -198,6 +201,42 @@ TEST(Heartbeat, TheTimeInWhichItWasStoppedIsNoSilenceOfOthers) {
   EXPECT_TRUE(listener.alive(Role::fast));
   test::run_for(clock, {&other}, 3s);
   EXPECT_FALSE(listener.alive(Role::fast));
+}
+
+// A diagnosis that computed for longer than 3 s was shown as gone.
+TEST(Heartbeat, AnnouncesThatItWillBeSilentOnce) {
+  test::VirtualClock clock;
+  test::VirtualNetwork network(clock);
+  Loop loop(network.transport(), clock, {.handle_signals = false, .host = "h1"});
+  Loop other(network.transport(), clock, {.handle_signals = false, .host = "h2"});
+  Heartbeat heartbeat(loop, {"egocal-diagnosis", Role::diagnosis, "1", 100}, 3s);
+  Heartbeat listener(other, {"egocal-global", Role::global, "1", 200}, 3s);
+  std::vector<std::chrono::seconds> announced;
+  listener.on_status([&](const status_t& status) { announced.push_back(announced_silence(status)); });
+  test::run_for(clock, {&loop, &other}, 1500ms);
+  announced.clear();
+  heartbeat.announce_silence(20s);
+  clock.advance(10s);
+  test::run_for(clock, {&loop, &other}, 1ms);
+  ASSERT_GE(announced.size(), 2u);
+  EXPECT_EQ(announced[0], 20s);
+  EXPECT_EQ(announced[1], 0s);
+}
+
+TEST(Heartbeat, ASilenceThatIsAnnouncedIsBounded) {
+  status_t status{};
+  EXPECT_EQ(announced_silence(status), 0s);
+  counter_t& counter = status.counters.emplace_back();
+  counter.name = announced_silence_counter;
+  for (const auto& [value, believed] : {std::pair{std::numeric_limits<std::int64_t>::min(), 0s},
+                                        {std::int64_t{-1}, 0s},
+                                        {7, 7s},
+                                        {60, 60s},
+                                        {61, 60s},
+                                        {std::numeric_limits<std::int64_t>::max(), 60s}}) {
+    counter.value = value;
+    EXPECT_EQ(announced_silence(status), believed) << value;
+  }
 }
 
 TEST(Loop, BadUrlIsOneClearError) {

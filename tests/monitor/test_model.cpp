@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include "egocal/monitor/lines.hpp"
 #include "egocal/monitor/model.hpp"
 #include "egocal/monitor/view.hpp"
 #include "pair_drive.hpp"
@@ -155,6 +156,35 @@ TEST(ModelEvents, ProcessGoneBackRestartedEnded) {
   EXPECT_THAT(about, ElementsAre("process is there (running)", "process is gone: no heartbeat for 3 s",
                                  "process is back", "process was restarted", "changed from running to paused",
                                  "no global solver", "changed from paused to ended"));
+}
+
+// A diagnosis of a drive that contradicts itself, on a core that others take, may compute for longer than 3
+// s.
+TEST(ModelEvents, AProcessThatComputesAsItHasAnnouncedIsNotGone) {
+  PairDrive drive;
+  status_t status = status_of("egocal-diagnosis", "diagnosis", 1);
+  drive.heartbeat(status);
+  counter_t& announced = status.counters.emplace_back();
+  announced.name = bus::announced_silence_counter;
+  announced.value = 20;
+  status.n_counters = static_cast<std::int32_t>(status.counters.size());
+  drive.heartbeat(status);
+  drive.run(20);
+  EXPECT_FALSE(drive.model.processes()[0].computes) << "others are silent for so long, too";
+  drive.run(100);
+  EXPECT_TRUE(drive.model.processes()[0].alive);
+  EXPECT_TRUE(drive.model.processes()[0].computes);
+  EXPECT_THAT(text_lines(drive.model, Charset::ascii), HasSubstr("egocal-diagnosis: computes, pid"));
+  drive.run(100);
+  EXPECT_FALSE(drive.model.processes()[0].alive) << "it was silent for longer than it has announced";
+  EXPECT_FALSE(drive.model.processes()[0].computes);
+  EXPECT_THAT(drive.texts(), Contains("egocal-diagnosis: process is gone: no heartbeat for 20 s"));
+  drive.heartbeat(status);
+  status.counters.pop_back();
+  status.n_counters = static_cast<std::int32_t>(status.counters.size());
+  drive.heartbeat(status);
+  drive.run(40);
+  EXPECT_FALSE(drive.model.processes()[0].alive) << "its computation was over";
 }
 
 // A clock that is set back between a death and the restart gives the new run the smaller number.

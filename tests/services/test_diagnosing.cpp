@@ -27,6 +27,22 @@ TEST_F(DiagnosisService, CallsACleanDriveGood) {
   EXPECT_EQ(status.state, "running");
 }
 
+// On a core that others take a diagnosis takes longer than a process may be silent.
+TEST_F(DiagnosisService, AnnouncesThatItWillBeSilentWhileItJudges) {
+  const auto diagnose = options.diagnose;
+  std::vector<std::chrono::seconds> while_it_judged;
+  options.diagnose = [&](const auto&... arguments) {
+    observer.run_once({});
+    while_it_judged.push_back(bus::announced_silence(status));
+    return diagnose(arguments...);
+  };
+  start();
+  play(drive(200), 0, 200);
+  ASSERT_FALSE(while_it_judged.empty());
+  EXPECT_THAT(while_it_judged, ::testing::Each(60s));
+  EXPECT_EQ(bus::announced_silence(status), 0s);
+}
+
 // It knows nothing of the bump, whose motions are in the answer.
 TEST_F(DiagnosisService, CallsNothingGoodWhoseMotionsItHasHardlySeen) {
   testing::Streams streams = drive(800);

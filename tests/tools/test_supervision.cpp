@@ -38,6 +38,7 @@ using test::send_signal;
 using test::Supervision;
 using test::until;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using tools::Program;
 
 // Where several users write, such as /tmp, a folder of that name may be somebody else's.
@@ -278,6 +279,34 @@ TEST_F(Supervision, WhatWasStoppedIsContinued) {
   EXPECT_TRUE(until([&] { return std::filesystem::exists(path("continued")); }));
   send_signal(pid, SIGTERM);
   EXPECT_EQ(ended(), 0);
+}
+
+// A diagnosis that was short of a core was silent for more than 5 s, and was reported as one that hangs.
+TEST_F(Supervision, WhatComputesAsItHasAnnouncedIsLeftAloneButNotWhatIsStopped) {
+  options.silence.hangs = 5300ms;
+  options.may_be_silent = [this](pid_t asked) {
+    const auto late = lines(path("late.pids"));
+    return !late.empty() && std::stoi(late.front()) == asked ? 9s : 60s;
+  };
+  // one that is always heard
+  options.heard_ago = [this](pid_t asked) -> std::optional<std::chrono::milliseconds> {
+    const auto one = lines(path("one.pids"));
+    return !one.empty() && std::stoi(one.front()) == asked ? 10ms : 10s;
+  };
+  const std::string computes = "echo $$ >>$F/$NAME.pids; while :; do :; done";
+  start({waiting("one"), script("computing", "NAME=computing; " + computes),
+         script("late", "NAME=late; " + computes),
+         script("stopped", "echo $$ >>$F/stopped.pids; kill -STOP $$; echo >>$F/continued; exec sleep 100")});
+  const pid_t computing = process("computing");
+  EXPECT_TRUE(until([&] { return std::filesystem::exists(path("continued")); }));
+  process("late", 2);
+  EXPECT_TRUE(runs(computing));
+  send_signal(pid, SIGTERM);
+  EXPECT_EQ(ended(), 0);
+  EXPECT_EQ(lines(path("computing.pids")).size(), 1u);
+  EXPECT_THAT(read(path("said")), HasSubstr("late is silent for 10.0 s: it hangs or was stopped"));
+  EXPECT_THAT(read(path("said")), HasSubstr("stopped is silent for 10.0 s: it hangs or was stopped"));
+  EXPECT_THAT(read(path("said")), Not(HasSubstr("computing is silent")));
 }
 
 // The process that listens to the bus is forked beside the programs: its pid would be another's once it is

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Processes of `egocal up` that are killed, stopped or told, and what they keep.
+#include <sched.h>
 #include <sys/resource.h>
 
 #include <functional>
@@ -10,6 +11,7 @@
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
 #include "egocal/bus/loop.hpp"
+#include "egocal/bus/process.hpp"
 #include "up.hpp"
 
 namespace egocal::test_up_processes {
@@ -128,6 +130,71 @@ TEST_F(Up, AProcessThatWasStoppedIsContinuedAndNothingIsLost) {
   EXPECT_EQ(egocal.wait(60s), 0) << read(path("said"));
   EXPECT_THAT(read(path("said")), HasSubstr("egocal-pairing is silent for "));
   EXPECT_THAT(read(path("said")), HasSubstr("optimal (proven), 400 motion pairs"));
+}
+
+/// Takes nearly all of the core of another process while it exists.
+class Load {
+ public:
+  explicit Load(pid_t victim) : victim_(victim) {
+    cpu_set_t all, one;
+    sched_getaffinity(0, sizeof all, &all);
+    CPU_ZERO(&one);
+    for (int cpu = 0; CPU_COUNT(&one) == 0; ++cpu)
+      if (CPU_ISSET(cpu, &all)) CPU_SET(cpu, &one);
+    sched_setaffinity(busy_.pid(), sizeof one, &one);
+    sched_setaffinity(victim, sizeof one, &one);
+    setpriority(PRIO_PROCESS, static_cast<id_t>(victim), 19);
+  }
+  ~Load() {
+    setpriority(PRIO_PROCESS, static_cast<id_t>(victim_), 0);
+    busy_.signal(SIGKILL);
+    busy_.wait(10s);
+  }
+  Load(const Load&) = delete;
+  Load& operator=(const Load&) = delete;
+
+ private:
+  pid_t victim_;
+  ChildProcess busy_{{"/bin/sh", "-c", "while :; do :; done"}};
+};
+
+// It was reported as one that hangs: a diagnosis sends no status, and took more than 5 s on a busy machine.
+TEST_F(Up, ADiagnosisThatComputesForLongIsLeftAloneUnlessItIsStopped) {
+  const std::string url = "udpm://239.255.76.67:7754?ttl=0";
+  bus::Loop loop(url, bus::LoopOptions{.handle_signals = false});
+  std::int64_t heard_us = loop.mono_us();
+  bool announced = false;
+  loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
+    if (status.role != "diagnosis") return;
+    heard_us = loop.mono_us();
+    announced = bus::announced_silence(status) > 0s;
+  });
+  const auto computes_for = [&](std::chrono::microseconds time) {
+    return until(
+        [&] {
+          loop.run_once(10ms);
+          return announced && loop.mono_us() - heard_us > time.count();
+        },
+        90s);
+  };
+  ChildProcess egocal = up({"--lcm-url", url, "--log", log, "--speed", "2"});
+  ASSERT_TRUE(computes_for(0s)) << "never";
+  const pid_t diagnosis = child(egocal.pid(), "egocal-diagnosi");
+  {
+    const Load load(diagnosis);
+    if (!computes_for(6500ms)) GTEST_SKIP() << "its priority changes nothing here";
+    EXPECT_THAT(read(path("said")), Not(HasSubstr("egocal-diagnosis is silent")));
+    send_signal(diagnosis, SIGSTOP);
+    EXPECT_TRUE(until(
+        [&] { return read(path("said")).find("egocal-diagnosis is silent for") != std::string::npos; }));
+  }
+  EXPECT_TRUE(until([&] {
+    loop.run_once(10ms);
+    return read(path("said")).find("egocal-diagnosis is heard again") != std::string::npos;
+  })) << "it is continued";
+  EXPECT_EQ(child(egocal.pid(), "egocal-diagnosi"), diagnosis);
+  egocal.signal(SIGINT);
+  egocal.wait(30s);
 }
 
 TEST_F(Up, RestartsWhatIsKilledAndEndsWithCtrlC) {

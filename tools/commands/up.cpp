@@ -215,6 +215,7 @@ void run(const UpOptions& options, Interruptions& interruptions) {
     passing.emplace(supervisor.output_dir);
   }
   supervisor.heard_ago = [&watch](pid_t pid) { return watch.silence(pid); };
+  supervisor.may_be_silent = [&watch](pid_t pid) { return watch.announced_silence(pid); };
   supervisor.lines = watch.lines();
   supervisor.lines_again = [&watch] { return watch.listen_again(); };
   if (!options.log.empty()) supervisor.awaited = [&watch] { return watch.awaited(); };

@@ -105,12 +105,13 @@ struct BusWatch::Shared {
   struct Process {
     std::atomic<pid_t> pid{-1};
     std::atomic<std::int64_t> heard_ms{0};
+    std::atomic<std::int64_t> announced_s{0};  ///< silence
   };
   std::atomic<int> awaited{0};
   std::atomic<int> asked{0}, counted{0};  ///< questions for it, and the last one that it was counted for
   std::array<Process, most_processes> processes;
 
-  void heard(pid_t pid, std::int64_t now_ms) {
+  void heard(pid_t pid, std::chrono::seconds announced, std::int64_t now_ms) {
     auto entry = std::find_if(processes.begin(), processes.end(),
                               [pid](const Process& process) { return process.pid == pid; });
     if (entry == processes.end()) {
@@ -118,6 +119,7 @@ struct BusWatch::Shared {
                                [](const Process& x, const Process& y) { return x.heard_ms < y.heard_ms; });
       entry->pid = -1;
     }
+    entry->announced_s = announced.count();
     entry->heard_ms = now_ms;
     entry->pid = pid;
   }
@@ -203,7 +205,7 @@ void BusWatch::listen(int out, int lines) {
     bus::Loop& loop = listening.loop();
     loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
       listening.hear(status);
-      if (status.host == loop.host()) shared_->heard(status.pid, mono_ms());
+      if (status.host == loop.host()) shared_->heard(status.pid, bus::announced_silence(status), mono_ms());
     });
     bool waits = false;  // the log has ended
     const std::int64_t begin_ms = mono_ms();
@@ -299,6 +301,12 @@ std::optional<milliseconds> BusWatch::silence(pid_t pid) const {
   for (const Shared::Process& process : shared_->processes)
     if (process.pid == pid) return milliseconds(std::max<std::int64_t>(0, mono_ms() - process.heard_ms));
   return std::nullopt;
+}
+
+milliseconds BusWatch::announced_silence(pid_t pid) const {
+  for (const Shared::Process& process : shared_->processes)
+    if (process.pid == pid) return std::chrono::seconds(process.announced_s);
+  return milliseconds(0);
 }
 
 int BusWatch::awaited() const {

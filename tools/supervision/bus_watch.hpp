@@ -56,6 +56,8 @@ class BusWatch {
 
   /// How long ago the status of a process on this host was received; nothing: never.
   std::optional<std::chrono::milliseconds> silence(pid_t pid) const;
+  /// For how long it may be silent since then because it computes, see bus::announced_silence().
+  std::chrono::milliseconds announced_silence(pid_t pid) const;
   /// Asked at a log's end for the first time. Pairs whose newest answer or verdict is not about their last
   /// motions: those of a drive's end still come. The last ones are known once pairing has sent the same
   /// problem again after it has acknowledged its last message. All pairs, until the listening process has

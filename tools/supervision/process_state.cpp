@@ -8,6 +8,7 @@
 #include <csignal>
 #include <fstream>
 #include <string>
+#include <string_view>
 #include <thread>
 
 namespace egocal::tools {
@@ -27,14 +28,24 @@ void wait_until_stopped(pid_t pid) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
 }
 
-}  // namespace
-
-bool has_work(pid_t pid) {
+/// One of these states, by their letters in /proc.
+bool is_in(pid_t pid, std::string_view states) {
   std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
   std::string text;
   std::getline(stat, text);
   const std::size_t name_end = text.rfind(") ");
-  return name_end != std::string::npos && std::string("RDTt").find(text[name_end + 2]) != std::string::npos;
+  return name_end != std::string::npos && name_end + 2 < text.size() &&
+         states.find(text[name_end + 2]) != std::string_view::npos;
+}
+
+}  // namespace
+
+bool has_work(pid_t pid) {
+  return is_in(pid, "RDTt");
+}
+
+bool computes(pid_t pid) {
+  return is_in(pid, "RD");
 }
 
 void stop_until_continued(std::span<const pid_t> foreground, bool by_key) {

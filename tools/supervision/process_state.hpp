@@ -12,6 +12,9 @@ namespace egocal::tools {
 /// It computes, or would if it got a core, or if it was not stopped.
 bool has_work(pid_t pid);
 
+/// It computes, or would if it got a core or its disk; one that is stopped does not.
+bool computes(pid_t pid);
+
 /// Stops this process after the programs that have its terminal, until SIGCONT, then continues them. A shell
 /// takes the terminal when this process has stopped: a program must have given it back by then, or it would
 /// be stopped a second time when it does. by_key: the terminal has sent it to them already. SIGTSTP is

@@ -128,7 +128,7 @@ class Supervisor {
     watched_at_ = now;
     for (Child& child : children_) {
       const std::optional<milliseconds> since = heard_ago(child);
-      if (child.program.foreground || !since) continue;
+      if (child.program.foreground || !since || computes_as_announced(child, *since)) continue;
       const std::string& name = child.program.name;
       switch (child.silence.look(*since, passed, any_heard, options_.silence)) {
         case Silence::Next::nothing:
@@ -149,6 +149,12 @@ class Supervisor {
           break;
       }
     }
+  }
+
+  /// One that is stopped meanwhile, or waits for something, hangs as others do.
+  bool computes_as_announced(const Child& child, milliseconds silent) const {
+    return options_.may_be_silent && silent >= options_.silence.silent &&
+           silent <= options_.may_be_silent(child.pid) && computes(child.pid);
   }
 
   bool any_has_work() const {

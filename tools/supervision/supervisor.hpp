@@ -31,6 +31,8 @@ struct SupervisorOptions {
   /// is a process that was never heard.
   std::function<std::optional<std::chrono::milliseconds>(pid_t)> heard_ago{};
   SilenceOptions silence;
+  /// For how long a process may be silent while it computes, by what it said last (bus::announced_silence).
+  std::function<std::chrono::milliseconds(pid_t)> may_be_silent{};
   int lines = -1;  ///< lines from this file descriptor are reported as well; it does not block. -1: none
   /// Asked where `lines` has ended: the file descriptor of whoever writes them from then on; empty: nobody.
   std::function<std::optional<int>()> lines_again;

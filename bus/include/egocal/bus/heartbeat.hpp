@@ -72,6 +72,9 @@ class Heartbeat {
   /// Called for each status of another process.
   void on_status(std::function<void(const status_t&)> callback) { on_status_ = std::move(callback); }
   void publish();
+  /// Sends a status that announces a computation: for up to so long (at most longest_announced_silence) this
+  /// process sends nothing, and is not gone. The next status ends it.
+  void announce_silence(std::chrono::seconds at_most);
 
   bool alive(Role role) const;
   /// The network has been there for a whole heartbeat timeout: all others have sent their status.
@@ -101,6 +104,7 @@ class Heartbeat {
   std::function<void(const status_t&)> on_status_;
   std::int64_t published_us_ = 0;
   bool change_pending_ = false;
+  std::chrono::seconds announced_{0};  ///< silence, by the status that is sent
 };
 
 }  // namespace egocal::bus

@@ -3,9 +3,12 @@
 // What a process is and what it does, as its heartbeats say it.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <string_view>
+
+#include "egocal/status_t.hpp"
 
 namespace egocal::bus {
 
@@ -25,6 +28,14 @@ std::string_view state_name(State state);
 /// Empty: another version's.
 std::optional<Role> role_from_name(std::string_view name);
 std::optional<State> state_from_name(std::string_view name);
+
+/// Counter of a status before a long computation: for so long this process may be silent [s], see
+/// Heartbeat::announce_silence(). The next status does not have it.
+constexpr std::string_view announced_silence_counter = "silent for up to";
+/// The longest silence that is believed: a limit, a status may say anything.
+constexpr std::chrono::seconds longest_announced_silence{60};
+/// For how long after this status its sender may be silent because it computes; 0: it announces nothing.
+std::chrono::seconds announced_silence(const status_t& status);
 
 /// Whether a process of this role does anything on a command_t with this verb ("seek 3": seek). Listeners
 /// alone (monitor, up, export) obey none.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -176,8 +177,10 @@ struct ProcessState {
   std::optional<bus::State> state;  ///< its state; empty: unknown to this version
   Now at;
   bool alive = true;
-  bool known = true;                 ///< false: the monitor has no network, alive is of before
-  double rate_in = 0, rate_out = 0;  ///< [1/s]; negative: unknown
+  bool known = true;                  ///< false: the monitor has no network, alive is of before
+  std::chrono::seconds announced{0};  ///< silence, by its newest status, because it computes
+  bool computes = false;              ///< it is silent for longer than others may be, as it has announced
+  double rate_in = 0, rate_out = 0;   ///< [1/s]; negative: unknown
   std::int64_t in = 0, out = 0;
   std::int64_t lost = 0, rejected = 0;   ///< without what comes of a pause or a seek
   std::vector<bus::Refusal> rejections;  ///< by reason, with its cure where one is known
