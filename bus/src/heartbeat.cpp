@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include "egocal/bus/channels.hpp"
@@ -56,7 +57,8 @@ void Heartbeat::set_state(State state) {
 }
 
 void Heartbeat::set_error(const std::string& error) {
-  std::string text = printable(error);
+  constexpr std::size_t most_bytes = 400;  // a limit: two errors at once, and the status fits one datagram
+  std::string text = printable(error, most_bytes);
   if (text == error_) return;
   error_ = std::move(text);
   change();

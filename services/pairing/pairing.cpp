@@ -271,10 +271,15 @@ void Pairing::show_state() {
   heartbeat_.set_state(!leads() ? bus::State::waiting : paused ? bus::State::paused : bus::State::running);
   heartbeat_.set_error(senior ? "another process has this name and continues: pid " +
                                     std::to_string(senior->pid) + " on " + senior->host
-                       : !save_error_.empty()    ? save_error_
-                       : !without_clock_.empty() ? without_clock_
-                       : saved_                  ? saved_->refused()
-                                                 : "");
+                              : error());
+}
+
+/// All that is wrong: a pair without motions may be so because the state with its clocks was refused.
+std::string Pairing::error() const {
+  std::string text;
+  for (const std::string& one : {save_error_, without_clock_, saved_ ? saved_->refused() : ""})
+    if (!one.empty()) text += (text.empty() ? "" : "; ") + one;
+  return text;
 }
 
 void Pairing::every_second() {

@@ -63,6 +63,7 @@ class Pairing {
   void acknowledge();
   void hear(const status_t& status);
   void show_state();
+  std::string error() const;
   void begin_to_send();
   bool acknowledges_early() const;
   bool saved_or_known_not_to_be() const;

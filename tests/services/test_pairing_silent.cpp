@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A log that ends shortly after the clocks were compared for the first time: the poses that were held back
 // until then count all the same.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "egocal/bus/channels.hpp"
@@ -15,6 +18,7 @@
 #include "egocal/bus/loop.hpp"
 #include "egocal/bus/rig.hpp"
 #include "pairing/pairing.hpp"
+#include "support/scratch_folder.hpp"
 #include "support/simulated_drive.hpp"
 #include "support/virtual_time.hpp"
 
@@ -27,12 +31,12 @@ class SilentPairing : public ::testing::Test {
  protected:
   static constexpr int rate = 50;  ///< [Hz]: the first estimate comes into force after 12 s
 
-  SilentPairing()
+  explicit SilentPairing(std::unique_ptr<SavedState> saved = nullptr)
       : network_(clock_),
         loop_(network_.transport(), clock_, {.handle_signals = false}),
         others_(network_.transport(), clock_, {.handle_signals = false}),
         heartbeat_(loop_, {"egocal-pairing", bus::Role::pairing, "1.0", 1}, 3s),
-        pairing_(loop_, heartbeat_, rig(), nullptr) {
+        pairing_(loop_, heartbeat_, rig(), std::move(saved)) {
     others_.subscribe<problem_t>(
         bus::problem_channel("a", "b"),
         [this](const problem_t& problem, const bus::Arrival&) { newest_ = problem; });
@@ -107,6 +111,30 @@ TEST_F(SilentPairing, AnEndBeforeTheClocksAreComparedIsReported) {
   stay_silent();
   EXPECT_EQ(last_error_, "");
   EXPECT_GE(newest_.seq, static_cast<std::int64_t>(streams.a.size()) - 10);
+}
+
+// The state with the offset of the clocks was refused: one error hid the other.
+struct Folder {
+  testing::ScratchFolder folder;
+};
+class WithRefusedState : Folder, public SilentPairing {
+ protected:
+  WithRefusedState() : SilentPairing(refused(folder.path("pairing.state"))) {}
+
+  static std::unique_ptr<SavedState> refused(const std::string& file) {
+    bus::Rig other = rig();
+    other.pairs[0].stride = 7;
+    SavedState(file, other).restore();
+    return std::make_unique<SavedState>(file, rig());
+  }
+};
+
+TEST_F(WithRefusedState, BothAreReported) {
+  send(drive(9), 0, 9 * rate, 20ms);
+  stay_silent();
+  EXPECT_THAT(last_error_, ::testing::StartsWith("a -> b: no motion yet, as time_offset"));
+  EXPECT_THAT(last_error_, ::testing::HasSubstr("; "));
+  EXPECT_THAT(last_error_, ::testing::HasSubstr("another rig or version"));
 }
 
 // Played so slowly that there is a silence after each pose.

@@ -100,7 +100,7 @@ void BusNews::hear_error(const status_t& status, std::int64_t now_us) {
   error.heard = status.run;
   if (!status.last_error.empty()) {
     error.complained = status.run;
-    heard = {bus::printable(status.name, 40), bus::printable(status.last_error, 300)};
+    heard = {bus::printable(status.name, 40), bus::printable(status.last_error, 400)};
   }
   if (heard == error.now) return;
   error.now = std::move(heard);
