@@ -24,8 +24,7 @@ Pairing::Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig
       accumulation_(saved_ ? saved_->restore() : Accumulation(rig)),
       arrivals_(rig.sensors.size()),
       published_mono_us_(rig.pairs.size()),
-      watched_mono_us_(loop.mono_us()),
-      listened_us_(watched_mono_us_) {
+      listening_clock_(options.watch_period, loop.mono_us()) {
   for (std::size_t i = 0; i < rig.sensors.size(); ++i)
     loop_.subscribe_bytes(
         rig.sensors[i].channel,
@@ -173,22 +172,6 @@ void Pairing::publish_motions() {
     loop_.publish(channels_[motion.pair].motion, motion.message);
 }
 
-/// How long this process has been able to hear others [us]: the monotonic clock without the time in which
-/// this process was stopped, or was reading what had arrived meanwhile.
-std::int64_t Pairing::listened_us() const {
-  const std::int64_t longest_us = 2 * std::chrono::microseconds(options_.watch_period).count();
-  return listened_us_ + std::min(loop_.mono_us() - watched_mono_us_, longest_us);
-}
-
-void Pairing::listen_on() {
-  const std::int64_t now = loop_.mono_us(), listened = listened_us();
-  const bool stopped = listened - listened_us_ < now - watched_mono_us_;
-  watched_mono_us_ = now;
-  catching_up_ = stopped || (catching_up_ && !caught_up_);
-  if (!catching_up_) listened_us_ = listened;
-  if (stopped) heard_again_us_ = listened_us_ + options_.heard_again_us;
-}
-
 /// A player sends again what is missing.
 void Pairing::be_patient_if_it_helps() {
   const std::int64_t now = listened_us();
@@ -201,8 +184,9 @@ void Pairing::be_patient_if_it_helps() {
 /// Ten times a second: gives up gaps that nothing fills. After a stop the messages that wait in the socket
 /// are read first.
 void Pairing::watch_gaps() {
-  listen_on();
-  if (catching_up_) return;
+  if (listening_clock_.look(loop_.mono_us(), caught_up_))
+    heard_again_us_ = listened_us() + options_.heard_again_us;
+  if (listening_clock_.catching_up()) return;
   be_patient_if_it_helps();
   const std::int64_t now = listened_us();
   bool waits = false;

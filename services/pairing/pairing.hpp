@@ -12,6 +12,7 @@
 #include "egocal/bus/heartbeat.hpp"
 #include "egocal/bus/rig.hpp"
 #include "pairing/accumulation.hpp"
+#include "pairing/listening_clock.hpp"
 #include "pairing/saved_state.hpp"
 #include "pairing/service_options.hpp"
 #include "program/commands.hpp"
@@ -54,8 +55,7 @@ class Pairing {
   void publish_motions();
   void be_patient_if_it_helps();
   void give_up_what_was_not_sent(const status_t& player);
-  std::int64_t listened_us() const;
-  void listen_on();
+  std::int64_t listened_us() const { return listening_clock_.now_us(loop_.mono_us()); }
   void watch_gaps();
   void release_what_silence_holds(std::int64_t now_us);
   void every_second();
@@ -79,11 +79,10 @@ class Pairing {
   std::vector<std::int64_t> published_mono_us_;  // each pair's problem
   std::optional<bus::Loop::TimerId> publish_timer_, acknowledge_timer_;
   std::set<std::int64_t> known_runs_;                      // of solvers and players
-  std::int64_t watched_mono_us_ = 0, listened_us_ = 0;     // at the last watch_gaps(), see listened_us()
+  ListeningClock listening_clock_;                         // looked at by watch_gaps()
   std::int64_t settle_until_us_ = 0, heard_again_us_ = 0;  // of listened_us()
-  bool catching_up_ = false;  // what came while this process was stopped is still to be read
-  bool caught_up_ = true;     // by the last batch
-  std::int64_t sent_ = 0;     // problems
+  bool caught_up_ = true;                                  // by the last batch
+  std::int64_t sent_ = 0;                                  // problems
   std::string save_error_;
   std::string without_clock_;  ///< a pair that is silent and has no motion yet, see PairSession
   std::int64_t save_again_mono_us_ = 0;
