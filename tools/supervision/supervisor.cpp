@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "supervision/supervisor.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <sys/signalfd.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,13 +11,13 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <filesystem>
 #include <optional>
 #include <string>
 
-#include "egocal/error.hpp"
-#include "supervision/output_file.hpp"
+#include "supervision/heard_lines.hpp"
 #include "supervision/process_state.hpp"
+#include "supervision/program_files.hpp"
+#include "supervision/program_signals.hpp"
 #include "supervision/reports.hpp"
 #include "supervision/spawn.hpp"
 #include "supervision/terminal_modes.hpp"
@@ -54,36 +52,25 @@ std::string ending(int status) {
   return fmt::format("exit code {}", WEXITSTATUS(status));
 }
 
+bool has_foreground(const std::vector<Program>& programs) {
+  return std::any_of(programs.begin(), programs.end(),
+                     [](const Program& program) { return program.foreground; });
+}
+
 class Supervisor {
  public:
-  Supervisor(const std::vector<Program>& programs, const SupervisorOptions& options) : options_(options) {
+  Supervisor(const std::vector<Program>& programs, const SupervisorOptions& options)
+      : options_(options), signals_(has_foreground(programs)) {
     for (const Program& program : programs) children_.push_back({program, Restarts(options.restarts)});
-    sigset_t mask;
-    sigemptyset(&mask);
-    for (const int signal : {SIGINT, SIGTERM, SIGCHLD, SIGHUP}) sigaddset(&mask, signal);
-    if (std::any_of(programs.begin(), programs.end(),
-                    [](const Program& program) { return program.foreground; })) {
-      terminal_.emplace();
-      sigaddset(&mask, SIGTSTP);
-    }
-    sigprocmask(SIG_BLOCK, &mask, &old_mask_);
-    // the caller may hold signals back for us
-    programs_mask_ = old_mask_;
-    for (const int signal : {SIGINT, SIGTERM, SIGCHLD, SIGHUP, SIGTSTP}) sigdelset(&programs_mask_, signal);
-    signals_ = signalfd(-1, &mask, SFD_CLOEXEC | SFD_NONBLOCK);
-    if (signals_ < 0) throw Error(std::string("signalfd: ") + std::strerror(errno));
+    if (has_foreground(programs)) terminal_.emplace();
   }
-  ~Supervisor() {
-    close(signals_);
-    reports_.end();  // before a signal that waits can end us
-    sigprocmask(SIG_SETMASK, &old_mask_, nullptr);
-  }
+  ~Supervisor() { reports_.end(); }  // before a signal that waits can end us: signals_ is there until then
   Supervisor(const Supervisor&) = delete;
   Supervisor& operator=(const Supervisor&) = delete;
 
   int run() {
     // all of them before the first program: a folder that is gone once one runs ends nothing
-    for (Child& child : children_) child.first_output = output_of(child);
+    for (Child& child : children_) child.first_output = files_.open_output_of(child.program, false);
     try {
       while (!ending_ || any_running()) turn();
     } catch (...) {
@@ -178,9 +165,10 @@ class Supervisor {
   }
 
   void start(Child& child) {
-    const int output = child.has_started ? output_of(child) : child.first_output;
+    const int output = child.has_started ? files_.open_output_of(child.program, true) : child.first_output;
     child.started = awake();
-    child.pid = spawn(child.program, command_of(child), output, programs_mask_);
+    child.pid = spawn(child.program, files_.command_of(child.program, child.has_started), output,
+                      signals_.mask_of_programs());
     const int reason = errno;
     if (output >= 0) close(output);
     child.has_started = true;
@@ -188,39 +176,6 @@ class Supervisor {
     if (child.pid < 0) {
       child.restarts.not_started();
       start_again(child, std::string("fork: ") + std::strerror(reason));
-    }
-  }
-
-  /// Without its state file where the folder is gone and cannot be made: a process that cannot lock its state
-  /// does not begin, and the drive goes on.
-  std::vector<std::string> command_of(const Child& child) {
-    std::vector<std::string> command = child.program.command;
-    const auto option = std::find(command.begin(), command.end(), "--state");
-    if (!child.has_started || option == command.end() || option + 1 == command.end()) return command;
-    const std::filesystem::path folder = std::filesystem::absolute(*(option + 1)).parent_path();
-    std::error_code none;
-    std::filesystem::create_directories(folder, none);
-    if (std::filesystem::is_directory(folder, none)) return command;
-    reports_.report(fmt::format(
-        "{}: is gone and cannot be made again; {} starts without the state file there, and saves nothing",
-        folder.string(), child.program.name));
-    command.erase(option, option + 2);
-    return command;
-  }
-
-  /// -1: where ours goes. A disk that has become full or a folder that is gone must not end what runs.
-  int output_of(const Child& child) {
-    if (options_.output_dir.empty() || child.program.foreground) return -1;
-    try {
-      if (child.has_started) {
-        std::error_code none;
-        std::filesystem::create_directories(options_.output_dir, none);
-      }
-      return open_output(output_file(child));
-    } catch (const Error& error) {
-      if (!child.has_started) throw;
-      reports_.report(std::string(error.what()) + "; its output is not kept");
-      return open("/dev/null", O_WRONLY | O_CLOEXEC);
     }
   }
 
@@ -235,37 +190,28 @@ class Supervisor {
         if (child.pid < 0 && !child.finished) until = std::min(until, child.start_at);
     }
     const auto left = std::chrono::duration_cast<milliseconds>(until - awake()).count();
-    pollfd waiting[] = {{signals_, POLLIN, 0}, {lines_, POLLIN, 0}};
+    pollfd waiting[] = {{signals_.descriptor(), POLLIN, 0}, {lines_.descriptor(), POLLIN, 0}};
     poll(waiting, std::size(waiting), static_cast<int>(std::clamp<long long>(left + 1, 0, 1000)));
     if (waiting[1].revents != 0) report_lines();
-    signalfd_siginfo info;
-    while (read(signals_, &info, sizeof info) == static_cast<ssize_t>(sizeof info))
-      if (info.ssi_signo == SIGTSTP) {
-        suspend(info.ssi_code == SI_KERNEL);
-      } else if (info.ssi_signo != SIGCHLD && !ending_) {
+    while (const std::optional<signalfd_siginfo> info = signals_.next())
+      if (info->ssi_signo == SIGTSTP) {
+        suspend(info->ssi_code == SI_KERNEL);
+      } else if (info->ssi_signo != SIGCHLD && !ending_) {
         // a key of the terminal has reached those in the foreground already
-        const bool by_key = info.ssi_code == SI_KERNEL && info.ssi_signo == SIGINT;
-        end_all(info.ssi_signo == SIGINT ? SIGINT : SIGTERM, by_key);
+        const bool by_key = info->ssi_code == SI_KERNEL && info->ssi_signo == SIGINT;
+        end_all(info->ssi_signo == SIGINT ? SIGINT : SIGTERM, by_key);
       }
     reap();
   }
 
   void report_lines() {
-    char part[4096];
-    const ssize_t n = read(lines_, part, sizeof part);
-    if (n > 0) {
-      said_.append(part, static_cast<std::size_t>(n));
-      for (std::size_t end = said_.find('\n'); end != std::string::npos; end = said_.find('\n')) {
-        reports_.report(said_.substr(0, end));
-        said_.erase(0, end + 1);
-      }
-    } else if (n == 0 || errno != EAGAIN) {
-      const std::optional<int> again = options_.lines_again ? options_.lines_again() : std::nullopt;
-      lines_ = again.value_or(-1);
-      reports_.report(again ? "the process that listens to the bus has ended; it is started again"
-                            : "the process that listens to the bus has ended: nothing that hangs, errs or is "
-                              "not answered is reported any more");
-    }
+    for (const std::string& line : lines_.read()) reports_.report(line);
+    if (lines_.descriptor() >= 0) return;
+    const std::optional<int> again = options_.lines_again ? options_.lines_again() : std::nullopt;
+    lines_ = HeardLines(again.value_or(-1));
+    reports_.report(again ? "the process that listens to the bus has ended; it is started again"
+                          : "the process that listens to the bus has ended: nothing that hangs, errs or is "
+                            "not answered is reported any more");
   }
 
   /// Ctrl-Z, or SIGTSTP from somebody.
@@ -301,9 +247,10 @@ class Supervisor {
         if (options_.awaited) static_cast<void>(options_.awaited());  // from now on
         return;
       case Restarts::Next::hopeless:
-        reports_.report(fmt::format("{} cannot be started ({}){}", child.program.name, reason(child, status),
-                                    options_.output_dir.empty() ? "" : ", see " + output_file(child)),
-                        true);
+        reports_.report(
+            fmt::format("{} cannot be started ({}){}", child.program.name, reason(child, status),
+                        options_.output_dir.empty() ? "" : ", see " + files_.output_file(child.program)),
+            true);
         failed_ = true;
         end_all(SIGTERM, false);
         return;
@@ -329,9 +276,7 @@ class Supervisor {
   /// How it ended, and its last line of output, unless somebody killed it, whatever it had said.
   std::string reason(const Child& child, int status) const {
     const bool killed = WIFSIGNALED(status) && (WTERMSIG(status) == SIGKILL || WTERMSIG(status) == SIGTERM);
-    const std::string said = options_.output_dir.empty() || child.program.foreground || killed
-                                 ? ""
-                                 : last_line(output_file(child));
+    const std::string said = killed ? "" : files_.last_line_of(child.program);
     return ending(status) + (said.empty() ? "" : ": " + said);
   }
 
@@ -354,20 +299,16 @@ class Supervisor {
   bool any_running() const {
     return std::any_of(children_.begin(), children_.end(), [](const Child& child) { return child.pid > 0; });
   }
-  std::string output_file(const Child& child) const {
-    return options_.output_dir + "/" + child.program.name + ".out";
-  }
 
   SupervisorOptions options_;
+  ProgramSignals signals_;
   std::vector<Child> children_;
   Clock::time_point looked_at_ = Clock::now(), awake_ = looked_at_;  ///< see awake()
   Clock::time_point watched_at_ = awake_;
-  sigset_t old_mask_{}, programs_mask_{};
-  int signals_ = -1;
   Reports reports_{options_.output_dir, options_.quiet};
+  ProgramFiles files_{options_.output_dir, reports_};
   std::optional<TerminalModes> terminal_;  ///< where a program has the terminal
-  int lines_ = options_.lines;
-  std::string said_;  ///< the beginning of a line
+  HeardLines lines_{options_.lines};
   std::optional<Clock::time_point> end_at_;
   bool wanted_at_once_ = false;  ///< the user has closed the monitor
   LastAnswers last_answers_{options_.last_answers};
