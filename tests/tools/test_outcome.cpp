@@ -308,6 +308,28 @@ TEST_F(OutcomeTest, TheExtentKnowsTheLongestSilence) {
   EXPECT_EQ(right.silent_until_us, 89 * second);
 }
 
+// One flipped bit: "camera: no pose from 29.9 to 1925.4 s" of a log of 30 s.
+TEST_F(OutcomeTest, ADamagedTimeIsNoSilence) {
+  const std::string log = folder / "damaged.log";
+  {
+    bus::LogWriter writer(log);
+    for (int i = 0; i < 30; ++i)
+      for (const char* channel : {"LEFT", "RIGHT"}) {
+        const bool damaged = channel[0] == 'L' && (i == 0 || i == 20);
+        writer.write(i * second + (damaged ? 2000 * second : 0), channel,
+                     bus::encode(bus::to_message(StampedPose{i * second, {}}, i)));
+      }
+    writer.close();
+  }
+  bus::LogReader reader(log);
+  LogExtent found = log_extent(reader, rig);
+  for (const char* name : {"left", "right"}) {
+    const LogExtent::Stream& stream = found.sensors.at(name);
+    EXPECT_LE(stream.silent_until_us - stream.silent_from_us, 2 * second) << name;
+    EXPECT_GE(stream.messages, 28) << name;
+  }
+}
+
 // It was "no solver answered".
 TEST_F(OutcomeTest, OfALogThatWasEmptiedMeanwhileIsUnusableAndIsPrinted) {
   extent = {};

@@ -47,17 +47,37 @@ class Silences {
  public:
   /// A damaged time is none of a message.
   void add(const std::string& name, std::int64_t time_us, LogExtent::Stream& stream) {
-    if (!plausible_relative_time(time_us) || (begin_us_ && time_us - end_us_ > longest_us)) return;
-    if (!begin_us_) begin_us_ = end_us_ = time_us;
-    end_us_ = std::max(end_us_, time_us);
-    ++stream.messages;
-    keep_longest(last_us_.try_emplace(name, *begin_us_).first->second, time_us, stream);
+    if (!plausible_relative_time(time_us)) return;
+    if (waiting_ && !is_ahead_of(time_us)) take(*waiting_);
+    waiting_ = {&name, time_us, &stream};
   }
   void finish(LogExtent& extent) {
+    if (waiting_) take(*waiting_);
     for (auto& [name, last_us] : last_us_) keep_longest(last_us, end_us_, extent.sensors.at(name));
   }
 
  private:
+  struct Message {
+    const std::string* sensor;
+    std::int64_t time_us;
+    LogExtent::Stream* stream;
+  };
+
+  /// Whether the message that waits was recorded after the ones before and after it: messages are recorded
+  /// one after the other, so its time is damaged.
+  bool is_ahead_of(std::int64_t next_us) const {
+    return waiting_->time_us - next_us > ahead_us && (!begin_us_ || waiting_->time_us - end_us_ > ahead_us);
+  }
+
+  void take(const Message& message) {
+    const auto& [sensor, time_us, stream] = message;
+    if (begin_us_ && time_us - end_us_ > longest_us) return;
+    if (!begin_us_) begin_us_ = end_us_ = time_us;
+    end_us_ = std::max(end_us_, time_us);
+    ++stream->messages;
+    keep_longest(last_us_.try_emplace(*sensor, *begin_us_).first->second, time_us, *stream);
+  }
+
   void keep_longest(std::int64_t& last_us, std::int64_t time_us, LogExtent::Stream& stream) const {
     if (time_us - last_us > stream.silent_until_us - stream.silent_from_us) {
       stream.silent_from_us = last_us - *begin_us_;
@@ -68,6 +88,10 @@ class Silences {
 
   /// Between messages of a log, whatever sensor they are of: a longer step is a damaged time.
   static constexpr std::int64_t longest_us = std::int64_t{24} * 3600 * 1'000'000;
+  /// By which a damaged time is ahead of its neighbours: a clock that is set back in mid-drive is not, as the
+  /// message before the step follows others, and a second less is no silence that is reported.
+  static constexpr std::int64_t ahead_us = 1'000'000;
+  std::optional<Message> waiting_;  ///< until the next one is known
   std::optional<std::int64_t> begin_us_;
   std::int64_t end_us_ = 0;
   std::map<std::string, std::int64_t> last_us_;  ///< by sensor
