@@ -10,6 +10,7 @@ degrees; the noise of the robot is a fifth of the camera's. Needs python3-opencv
 import argparse
 import sys
 import time
+import warnings
 
 import numpy as np
 
@@ -104,6 +105,7 @@ def solve_all(X, data):
 
 
 def main():
+    warnings.simplefilter("ignore", egocal.EgocalWarning)  # few samples are incomplete in most trials
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--trials", type=int, default=500, help="per cell")
     parser.add_argument("--samples", type=int, nargs="+", default=[3, 4, 5, 6, 8, 10, 15, 20, 30, 60])
