@@ -7,8 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <numbers>
 
@@ -18,6 +16,7 @@
 #include "egocal/io/whole_file.hpp"
 #include "egocal/samples/calibrate_samples.hpp"
 #include "markdown_tables.hpp"
+#include "support/benchmark_runs.hpp"
 #include "support/real_drives.hpp"
 #include "uncertainty/frame_a.hpp"
 
@@ -157,31 +156,10 @@ Table rivals() {
   return table;
 }
 
-Streams tampere_run(const std::filesystem::path& folder) {
-  Streams streams;
-  streams.a = read_trajectory((folder / "a.tum").string());
-  streams.b = read_trajectory((folder / "b.tum").string());
-  std::ifstream truth(folder / "truth.txt");
-  while (truth.peek() == '#') truth.ignore(1000, '\n');
-  double t[3] = {}, q[4] = {};
-  for (double& value : t) truth >> value;
-  for (double& value : q) truth >> value;
-  streams.T = to_dual_quaternion({Rotation(q[0], q[1], q[2], q[3]).normalized(), {t[0], t[1], t[2]}});
-  return streams;
-}
-
 struct Level {
   const char *name, *folder, *published;
 
-  std::vector<Streams> runs() const {
-    std::vector<std::filesystem::path> folders;
-    for (const auto& entry : std::filesystem::directory_iterator(paths::data_dir() + "/tampere/" + folder))
-      folders.push_back(entry.path());
-    std::sort(folders.begin(), folders.end());
-    std::vector<Streams> runs;
-    for (const std::filesystem::path& one : folders) runs.push_back(tampere_run(one));
-    return runs;
-  }
+  std::vector<Streams> runs() const { return testing::benchmark_runs(folder); }
 };
 
 const std::vector<Level> levels{{"noise on poses .002", "noise/noise_0.002000", "0.1195 deg, 1.7 mm"},
