@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/streams/rounded_copy.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -10,6 +9,7 @@
 
 #include "diagnosis/motions/changed_motions.hpp"
 #include "diagnosis/motions/robust_fit.hpp"
+#include "diagnosis/streams/written_digits.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "statistics/median.hpp"
 
@@ -17,93 +17,9 @@ namespace egocal::detail {
 
 namespace {
 
-/// How numbers were written: so many decimals, or so many significant digits. What holds of both is coarser.
-struct Digits {
-  int decimals = 0, significant = 0;  ///< 0: of no number that is counted
-
-  bool known() const { return decimals > 0 || significant > 0; }
-  /// Between one such number and the next, of about this size.
-  double step(double size) const {
-    const double by_decimals = decimals > 0 ? std::pow(10, -decimals) : 0;
-    const double by_digits =
-        significant > 0 && size > 0 ? std::pow(10, std::floor(std::log10(size)) + 1 - significant) : 0;
-    return std::max(by_decimals, by_digits);
-  }
-};
-
 /// Mean square of the rounding of a number that is one of many such [of their unit].
 double square_of_rounding(double step) {
   return step * step / 12;
-}
-
-/// Whether a number is a multiple of the step, to the rounding of doubles of this size.
-bool is_multiple(double number, double step, double size) {
-  const double multiple = number / step;
-  const double tolerance = 1e-6 + 4e-15 * size / step;
-  return tolerance < 0.01 && std::abs(multiple - std::round(multiple)) < tolerance;
-}
-
-/// Positions, as they come.
-struct Coordinates {
-  const Trajectory& trajectory;
-
-  bool written_with(std::size_t i, const Digits& digits) const {
-    const Eigen::Vector3d p = position_of(trajectory[i].pose);
-    const double size = p.cwiseAbs().maxCoeff();
-    return std::all_of(p.begin(), p.end(), [&](double x) {
-      const double step = digits.step(std::abs(x));
-      return !(step > 0) || is_multiple(x, step, size);
-    });
-  }
-};
-
-/// Quaternions. Those of a file were not quite of unit length; they are up to a factor near one, by which the
-/// largest component is such a number.
-struct Components {
-  const Trajectory& trajectory;
-
-  bool written_with(std::size_t i, const Digits& digits) const {
-    const QuaternionVector& q = trajectory[i].pose.real;
-    const double largest = q.cwiseAbs().maxCoeff(), step = digits.step(largest);
-    if (!(step > 0)) return true;
-    for (int more = -2; more <= 2; ++more) {
-      const double factor = (std::round(largest / step) + more) * step / largest;
-      if (std::all_of(q.begin(), q.end(), [&](double x) {
-            const double number = factor * x, of_this = digits.step(std::abs(number));
-            return std::abs(x) < 1e-15 || is_multiple(number, of_this, 1);
-          }))
-        return true;
-    }
-    return false;
-  }
-};
-
-template <typename Numbers>
-Digits digits_of(const Numbers& numbers, const RoundedCopyOptions& options) {
-  const std::size_t n = numbers.trajectory.size();
-  const std::size_t each = std::max<std::size_t>(1, n / options.looked_at);
-  const auto all_have = [&](const Digits& digits) {
-    std::size_t looked = 0, others = 0;
-    const auto most_others =
-        static_cast<std::size_t>(options.most_others * static_cast<double>(std::min(n, options.looked_at)));
-    for (std::size_t i = 0; i < n; i += each, ++looked)
-      if (!numbers.written_with(i, digits) && ++others > most_others) return false;
-    return looked >= options.fewest;
-  };
-  Digits result;
-  for (int count = 1; count <= options.most_digits && result.decimals == 0; ++count)
-    if (all_have({count, 0})) result.decimals = count;
-  for (int count = 1; count <= options.most_digits && result.significant == 0; ++count)
-    if (all_have({0, count})) result.significant = count;
-  return result;
-}
-
-struct Written {
-  Digits position, rotation;
-};
-
-Written written(const Trajectory& trajectory, const RoundedCopyOptions& options) {
-  return {digits_of(Coordinates{trajectory}, options), digits_of(Components{trajectory}, options)};
 }
 
 /// Mean squares of what rounding makes of a pose: of its rotation about each axis [rad^2], and along each
@@ -183,7 +99,7 @@ std::optional<Finding> rounded_copy(const Trajectory& a, const Trajectory& b, co
   const RobustFit fit = robust_fit(longer);
   const Pose T = to_pose(fit.T);
   if (!(fit.typical < options.certainly_noise * options.certainly_noise)) return std::nullopt;
-  const Written of_a = written(a, options), of_b = written(b, options);
+  const Written of_a = written(a, options.digits), of_b = written(b, options.digits);
   if (!of_a.position.known() && !of_b.position.known()) return std::nullopt;
   const Left of_longer = left_of(instants, longer, T, of_a, of_b, options);
   const double of_turning = of_longer.rotation_of_rounding / of_longer.turned,

@@ -7,16 +7,15 @@
 #include <optional>
 
 #include "diagnosis/motions/motions.hpp"
+#include "diagnosis/streams/written_digits.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
 #include "egocal/pairing/trajectory.hpp"
 
 namespace egocal::detail {
 
 struct RoundedCopyOptions {
-  std::size_t looked_at = 200;  ///< poses of a stream whose digits are counted, at most
-  std::size_t fewest = 20;      ///< poses, and motions
-  double most_others = 0.01;    ///< part of the poses that may have more digits: integers by chance, zeros
-  int most_digits = 8;          ///< of those that are counted: what is left of more is that of doubles
+  WrittenDigitsOptions digits;
+  std::size_t fewest = 20;  ///< instants, and motions
   /// The median of the residuals over what rounding leaves, at most: 0.60 to 1.12 in copies of 11 simulated
   /// machines with 3 to 5 decimals and with 6 digits. Noise of the sensors that is as large as two thirds of
   /// the rounding makes 1.2 of 1.

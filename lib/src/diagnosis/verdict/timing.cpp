@@ -12,6 +12,7 @@
 #include "diagnosis/explanations/times/late_positions.hpp"
 #include "diagnosis/motions/answer_change.hpp"
 #include "diagnosis/streams/undersampling.hpp"
+#include "diagnosis/verdict/rounding.hpp"
 #include "egocal/diagnosis/certain_of_either.hpp"
 #include "uncertainty/frame_a.hpp"
 
@@ -53,8 +54,14 @@ void look_at_times(const Foreseen& foreseen, Answered& answered, Diagnosis& resu
   Vector6d moved = Vector6d::Zero();
   if (clock != result.findings.end() && clock->T_a_b)
     moved = frame_a_difference(answered.T_a_b, to_dual_quaternion(*clock->T_a_b));
+  const Evidence& evidence = foreseen.evidence;
+  const double steps = instants.period > 0 ? evidence.stride * evidence.instants.period / instants.period : 1;
+  const std::array<double, 6> of_rounding =
+      rounding_stddev(part, instants, static_cast<int>(std::lround(steps)), evidence.given.explained.motions,
+                      answered.T_a_b, pairing.time_offset, pairing.max_gap, options);
   for (std::size_t i = 0; i < 6; ++i)
-    answered.timing_stddev[i] = std::hypot(of_interpolation[i], moved[static_cast<Eigen::Index>(i)]);
+    answered.timing_stddev[i] =
+        std::hypot(of_interpolation[i], moved[static_cast<Eigen::Index>(i)], of_rounding[i]);
   result.timing_stddev = answered.timing_stddev;
   if (std::optional<Finding> finding =
           undersampled(instants, answered, of_interpolation, options.undersampling))

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/streams/written_digits.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "egocal/geometry/pose.hpp"
+
+namespace egocal::detail {
+
+double Digits::step(double size) const {
+  const double by_decimals = decimals > 0 ? std::pow(10, -decimals) : 0;
+  const double by_digits =
+      significant > 0 && size > 0 ? std::pow(10, std::floor(std::log10(size)) + 1 - significant) : 0;
+  return std::max(by_decimals, by_digits);
+}
+
+namespace {
+
+/// Whether a number is a multiple of the step, to the rounding of doubles of this size.
+bool is_multiple(double number, double step, double size) {
+  const double multiple = number / step;
+  const double tolerance = 1e-6 + 4e-15 * size / step;
+  return tolerance < 0.01 && std::abs(multiple - std::round(multiple)) < tolerance;
+}
+
+/// Positions, as they come.
+struct Coordinates {
+  const Trajectory& trajectory;
+
+  bool written_with(std::size_t i, const Digits& digits) const {
+    const Eigen::Vector3d p = position_of(trajectory[i].pose);
+    const double size = p.cwiseAbs().maxCoeff();
+    return std::all_of(p.begin(), p.end(), [&](double x) {
+      const double step = digits.step(std::abs(x));
+      return !(step > 0) || is_multiple(x, step, size);
+    });
+  }
+};
+
+/// Quaternions. Those of a file were not quite of unit length; they are up to a factor near one, by which the
+/// largest component is such a number.
+struct Components {
+  const Trajectory& trajectory;
+
+  bool written_with(std::size_t i, const Digits& digits) const {
+    const QuaternionVector& q = trajectory[i].pose.real;
+    const double largest = q.cwiseAbs().maxCoeff(), step = digits.step(largest);
+    if (!(step > 0)) return true;
+    for (int more = -2; more <= 2; ++more) {
+      const double factor = (std::round(largest / step) + more) * step / largest;
+      if (std::all_of(q.begin(), q.end(), [&](double x) {
+            const double number = factor * x, of_this = digits.step(std::abs(number));
+            return std::abs(x) < 1e-15 || is_multiple(number, of_this, 1);
+          }))
+        return true;
+    }
+    return false;
+  }
+};
+
+template <typename Numbers>
+Digits digits_of(const Numbers& numbers, const WrittenDigitsOptions& options) {
+  const std::size_t n = numbers.trajectory.size();
+  const std::size_t each = std::max<std::size_t>(1, n / options.looked_at);
+  const auto all_have = [&](const Digits& digits) {
+    std::size_t looked = 0, others = 0;
+    const auto most_others =
+        static_cast<std::size_t>(options.most_others * static_cast<double>(std::min(n, options.looked_at)));
+    for (std::size_t i = 0; i < n; i += each, ++looked)
+      if (!numbers.written_with(i, digits) && ++others > most_others) return false;
+    return looked >= options.fewest;
+  };
+  Digits result;
+  for (int count = 1; count <= options.most_digits && result.decimals == 0; ++count)
+    if (all_have({count, 0})) result.decimals = count;
+  for (int count = 1; count <= options.most_digits && result.significant == 0; ++count)
+    if (all_have({0, count})) result.significant = count;
+  return result;
+}
+
+}  // namespace
+
+Written written(const Trajectory& trajectory, const WrittenDigitsOptions& options) {
+  return {digits_of(Coordinates{trajectory}, options), digits_of(Components{trajectory}, options)};
+}
+
+}  // namespace egocal::detail

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/verdict/rounding.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/motions/reading.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+/// Times the step. Multiples of a step are never in the middle of two multiples of an odd number of it.
+constexpr int coarser = 3;
+/// Variance that rounding to such steps adds, of that which the rounding before has made: n^2 - 1.
+constexpr double added = coarser * coarser - 1;
+
+/// The nearest of the numbers (coarser k + offset) step.
+double rounded(double x, double step, int offset) {
+  if (!(step > 0)) return x;
+  return (coarser * std::round((x / step - offset) / coarser) + offset) * step;
+}
+
+Trajectory rounded(Trajectory trajectory, const Written& written, int offset) {
+  for (StampedPose& stamped : trajectory) {
+    Pose pose = to_pose(stamped.pose);
+    Eigen::Vector4d q = pose.rotation.coeffs();
+    for (double& x : q) x = rounded(x, written.rotation.step(std::abs(x)), offset);
+    for (double& x : pose.translation) x = rounded(x, written.position.step(std::abs(x)), offset);
+    if (q.squaredNorm() > 0) pose.rotation = Eigen::Quaterniond(Eigen::Vector4d(q.normalized()));
+    stamped.pose = to_dual_quaternion(pose);
+  }
+  return trajectory;
+}
+
+/// Steps of one written unit length and of a position of this stream's, of the usual motion.
+bool matters(const Trajectory& trajectory, const Written& written, const Motions& motions, double least) {
+  const double place = trajectory.empty() ? 0 : position_of(trajectory.front().pose).cwiseAbs().maxCoeff();
+  return written.rotation.step(1) > least * motions.rotation ||
+         written.position.step(place) > least * motions.translation;
+}
+
+}  // namespace
+
+std::array<double, 6> rounding_stddev(const MiddlePart& part, const Instants& instants, int stride,
+                                      const Motions& motions, const DualQuaternion& T_a_b, double time_offset,
+                                      double max_gap, const DiagnosisOptions& options,
+                                      const RoundingOptions& tuning) {
+  std::array<double, 6> stddev{};
+  const Written of_a = written(part.a, tuning.digits), of_b = written(part.b, tuning.digits);
+  if (!matters(part.a, of_a, motions, tuning.least) && !matters(part.b, of_b, motions, tuning.least))
+    return stddev;
+  AnswerChangeOptions change = options.change;
+  change.motions = tuning.motions;
+  change.longer = std::max(1, stride);
+  Vector6d sum = Vector6d::Zero();
+  for (int offset = 0; offset < coarser; ++offset) {
+    const Trajectory a = rounded(part.a, of_a, offset), b = rounded(part.b, of_b, offset);
+    const Instants otherwise = synchronised(a, b, {time_offset, 0, 0}, max_gap, 1, options.motions);
+    const std::optional<AnswerChange> one = answer_change(instants, otherwise, T_a_b, change);
+    if (!one) return stddev;
+    // what is chance in each part is in the scatter between them
+    sum += (one->size.cwiseAbs2() - one->variance) / (added * coarser);
+  }
+  for (std::size_t i = 0; i < 6; ++i) stddev[i] = std::sqrt(std::max(0.0, sum[static_cast<Eigen::Index>(i)]));
+  return stddev;
+}
+
+}  // namespace egocal::detail
