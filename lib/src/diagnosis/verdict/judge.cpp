@@ -305,10 +305,10 @@ void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
         diagnosis.reason = finding.message;
         break;
       }
-  if (diagnosis.verdict >= Verdict::doubtful) return;
   const std::array<double, 6> unstable =
       spread_without_fifths(answered.problem, answered.T_a_b, options.stability);
   add_spread_of_unstable(unstable, answered, options, diagnosis);
+  if (diagnosis.verdict >= Verdict::doubtful) return;
   const Known known = known_to(answered, unstable, options);
   const auto little = std::find_if(diagnosis.findings.begin(), diagnosis.findings.end(),
                                    [](const Finding& one) { return one.code == "too_little_motion"; });
