@@ -72,8 +72,8 @@ struct Finding {
   std::string remedy;         ///< option or action that cures it
   double improvement = 1;     ///< squared residuals as given / under this explanation
   std::optional<Pose> T_a_b;  ///< the answer under this explanation, where it has one
-  /// mount_moved, scale_change, unrelated, filled_a|_b, clock_step: since the first pose
-  /// of a [s].
+  /// mount_moved, scale_change, unrelated, filled_a|_b, clock_step, and inverted_both where the mounting
+  /// would have moved at that time: since the first pose of a [s].
   std::optional<double> time;
   std::optional<double>
       value;  ///< scale and units: factor of b's lengths; clock_offset: added to b [s];
@@ -114,9 +114,11 @@ struct Diagnosis {
   Fit fit;
   std::vector<Finding> findings;  ///< most important first
   std::optional<Goal> goal;       ///< where one was given
-  /// What the times of the poses add to the standard deviations of the answer (x y z roll pitch yaw in sensor
-  /// a's frame [m, rad]): the interpolation of one stream at the stamps of the other one, and clocks that
-  /// differ. 0 where they add nothing.
+  /// What the times and digits of the poses add to the standard deviations of the answer (x y z roll pitch
+  /// yaw in sensor a's frame [m, rad]): the interpolation of one stream at the stamps of the other one,
+  /// clocks that differ, positions or rotations of another time, a small scale that the motions do not
+  /// exclude, rounding, and the change without a fifth of the drive where a direction hinges on it. To be
+  /// added as squares; 0 where they add nothing.
   std::array<double, 6> timing_stddev{};
 };
 

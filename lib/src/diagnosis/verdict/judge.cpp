@@ -178,7 +178,8 @@ bool within_what_is_stated(const Finding& finding, const Answered& answered,
 
 /// Both streams inverted, and a mounting that moved once (inverted_and_moved()), fit better than one mounting
 /// as given, in both measures: right streams do not look like that, those of which the wrong one was inverted
-/// do.
+/// do. There is no margin: such streams gain little, of ten below 1.35 in eight, and of 370 clean drives one
+/// has more than 1 (1.23, 20 s with noise that wanders).
 bool moved_if_inverted(const Finding& finding) {
   return finding.code == "inverted_both" && finding.time && finding.improvement > 1;
 }
