@@ -201,6 +201,11 @@ bool slight_move(const Finding& finding, double far, const std::vector<Finding>&
                       [](const Finding& one) { return one.code.ends_with("_both"); });
 }
 
+/// A scale that changes by what noise that wanders may look like, to an answer that this one is near.
+bool slight_scale_change(const Finding& finding, double far) {
+  return finding.code == "scale_change" && !finding.certain && finding.T_a_b && far <= near;
+}
+
 /// Another reading fits far better and has another answer. Which one it is may be open, not that the streams
 /// as given are wrong.
 bool refutes(const Finding& finding, double far, const DiagnosisOptions& options) {
@@ -243,9 +248,9 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
              (certain && finding.improvement > options.overwhelming))
       verdict = Verdict::contradictory;
     else if ((finding.code == "mount_moved" && !slight_move(finding, far, diagnosis.findings)) ||
-             finding.code == "scale_change" || clock_step(finding) || finding.code.starts_with("plane_") ||
-             apart > near || significant_scale(finding, answered, options.scale_check) ||
-             (casts_doubt(finding) && far > 1))
+             (finding.code == "scale_change" && !slight_scale_change(finding, far)) || clock_step(finding) ||
+             finding.code.starts_with("plane_") || apart > near ||
+             significant_scale(finding, answered, options.scale_check) || (casts_doubt(finding) && far > 1))
       verdict = Verdict::doubtful;
     if (verdict > worst.verdict) worst = {verdict, finding.message};
   }
@@ -288,7 +293,9 @@ void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
   const auto contradicts_itself = [&](const Finding& one) {
     const bool moved =
         one.code == "mount_moved" && !slight_move(one, far_off(one, answered, options), diagnosis.findings);
-    return one.code == "too_little_motion" || moved || one.code == "scale_change" ||
+    const bool changes =
+        one.code == "scale_change" && !slight_scale_change(one, far_off(one, answered, options));
+    return one.code == "too_little_motion" || moved || changes ||
            (certain_of_either(one) && !stream_fault(one) && !undersampling(one));
   };
   if (fit.verdict < Verdict::doubtful &&

@@ -143,15 +143,18 @@ std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evide
   const std::int64_t origin_us = a.front().time_us;
   Finding finding;
   finding.code = "scale_change";
-  finding.certain = true;
+  // noise that wanders makes lengths err for a while, as it does everything else: of that a scale leaves most
+  finding.certain = gain >= options.gain;
   finding.improvement = std::exp(gain);
   const ScaleSegment& first = course.segments.front();
   const bool drifts = course.segments.size() == 1;
   finding.time = to_seconds((drifts ? first.begin_us : first.end_us) - origin_us);
   finding.T_a_b = to_pose(explained.fit.T);
   say(finding,
-      "The lengths of {b} must be multiplied by a factor that changes along the drive: " +
-          in_words(course, origin_us) + (left.empty() ? ". With these the mounting does not move." : "."),
+      std::string("The lengths of {b} ") + (finding.certain ? "must" : "may have to") +
+          " be multiplied by a factor that changes along the drive: " + in_words(course, origin_us) +
+          (finding.certain ? "" : ". Noise that wanders for as long may look the same") +
+          (left.empty() ? ". With these the mounting does not move." : "."),
       "{solve}--scale-b auto finds the factors; --scale auto where {b} is in metres.");
   return finding;
 }
