@@ -92,8 +92,7 @@ bool replace_by_large_move(const PairingOptions& pairing, const Evidence& eviden
                            std::vector<Finding>& findings) {
   if (answered.problem.mode == Mode::planar) return false;
   for (const Finding& finding : findings)
-    if (finding.certain && !finding.code.starts_with("axes_") && !finding.code.starts_with("clock_"))
-      return false;
+    if (finding.certain && !of_reading_or_clock(finding)) return false;
   std::optional<Finding> move = large_move(evidence.instants, evidence.stride, options);
   if (!move) return false;
   for (const Finding& finding : findings)
