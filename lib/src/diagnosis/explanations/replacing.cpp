@@ -12,8 +12,11 @@
 #include "diagnosis/explanations/lengths/not_a_move.hpp"
 #include "diagnosis/explanations/lengths/unlike_columns.hpp"
 #include "diagnosis/explanations/turning/turning_scale.hpp"
+#include "diagnosis/mount/exchanged_streams.hpp"
 #include "diagnosis/mount/large_move.hpp"
 #include "diagnosis/mount/mount.hpp"
+#include "diagnosis/words/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 
 namespace egocal::detail {
 
@@ -44,6 +47,20 @@ bool of_reading_or_clock(const Finding& finding) {
   const std::string_view code = finding.code;
   return code.starts_with("axes_") || code.starts_with("quaternion_order_") || code == "inverted_a" ||
          code == "inverted_b" || code.starts_with("clock_");
+}
+
+/// Words the move of streams that are exchanged from then on.
+Finding exchanged(Finding move) {
+  say(move,
+      format(
+          "From about %.1f s after the start on, the mounting is the inverse of the one before: {a} and {b} "
+          "are exchanged from then on",
+          *move.time),
+      format("Exchange the poses of {a} and {b} from %.1f s on, or calibrate the drive before and after that "
+             "separately.",
+             *move.time),
+      ", as where topics or files were swapped.");
+  return move;
 }
 
 }  // namespace
@@ -99,6 +116,10 @@ bool replace_by_large_move(const PairingOptions& pairing, const Evidence& eviden
     if (finding.code != "inverted_both" && finding.improvement > move->improvement) return false;
   if (!wrong.contents().empty() && wrong.contents().front().improvement > move->improvement) {
     findings = wrong.contents();
+    return true;
+  }
+  if (move->time && exchanged_streams(evidence.given.explained.motions, *move->time, options)) {
+    findings = {exchanged(*std::move(move))};
     return true;
   }
   const std::vector<PoseReading> of_both = readings_of_both(findings);
