@@ -222,6 +222,13 @@ void look_further(const PairingOptions& pairing, const Evidence& evidence, const
     std::erase_if(findings, [](const Finding& one) { return !one.code.ends_with("_both"); });
     std::for_each(findings.begin(), findings.end(), word_beside_moves);
     findings.insert(findings.begin(), moves.begin(), moves.end());
+    // a slight move says little; beside it a large one may be hidden by streams that are both inverted
+    const auto slight = [](const Finding& one) { return one.code != "mount_moved" || !one.certain; };
+    if (!planar && std::all_of(findings.begin(), findings.end(), slight) &&
+        std::none_of(findings.begin(), findings.end(),
+                     [](const Finding& one) { return one.code == "inverted_both"; }))
+      if (std::optional<Finding> other = inverted_and_moved(evidence, answered, options))
+        findings.push_back(*std::move(other));
     return;
   }
   if (!planar)
