@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "diagnosis/explanations/contents/forward.hpp"
+#include "diagnosis/explanations/lengths/lengths_in_turns.hpp"
 #include "diagnosis/explanations/planes.hpp"
 #include "diagnosis/explanations/replacing.hpp"
 #include "diagnosis/explanations/times/clock_check.hpp"
@@ -164,6 +165,7 @@ void add_what_is_beside(const Foreseen& foreseen, const DiagnosisOptions& option
   name_wrong_scale(evidence, pairing, answered, options, result.findings);
   add_same_stream(evidence, answered, options, result);
   add_impossible_pace(evidence, options, result.findings);
+  name_lengths_in_turns(evidence, answered, options, result.findings);
   look_at_times(foreseen, answered, result);
   name_small_scale(evidence, options, answered, result);
   if (pairing.mode != Mode::planar) {

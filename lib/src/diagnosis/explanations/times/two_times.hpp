@@ -69,7 +69,8 @@ class StreamOfTwoTimes {
   double longest_;            ///< [s]
 };
 
-enum class FreeTimes { none, one_for_both, two };
+/// `first`: the first of the two numbers alone.
+enum class FreeTimes { none, first, one_for_both, two };
 
 /// Reweighted linear least squares, in parts of the drive. The motions must stay.
 class TwoTimesFit {
