@@ -3,6 +3,7 @@
 #include "calibration/steps.hpp"
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "egocal/scale/solve_scale.hpp"
@@ -42,6 +43,12 @@ Calibration judged(Calibration calibration, Diagnosis diagnosis) {
     if (diagnosis.timing_stddev[i] > 0)  // else not a bit is changed
       calibration.observability.stddev[i] =
           std::hypot(calibration.observability.stddev[i], diagnosis.timing_stddev[i]);
+  for (std::size_t i = 0; i < diagnosis.assumed.size(); ++i)
+    if (diagnosis.assumed[i]) {
+      calibration.observability.observable[i] = false;
+      calibration.observability.stddev[i] = std::numeric_limits<double>::infinity();
+      calibration.observability.hint.clear();  // no motion would help
+    }
   calibration.reason = std::move(diagnosis.reason);
   calibration.fit = std::move(diagnosis.fit);
   calibration.findings = std::move(diagnosis.findings);

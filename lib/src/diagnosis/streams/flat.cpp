@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "diagnosis/motions/stillest_point.hpp"
+#include "diagnosis/streams/turning_axis.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
@@ -31,40 +31,14 @@ struct Tilting {
   double noise = 0;  ///< difference of what both streams turn about that axis and in the plane
 };
 
-const DualQuaternion& motion_of(const Motion& motion, Side side) {
-  return side == Side::a ? motion.a : motion.b;
-}
-
-/// The axis of a sensor that its motions move least, and the root mean square of how far [rad].
-std::pair<Eigen::Vector3d, double> stillest_axis(const Motions& motions, Side side) {
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  for (const Motion& motion : motions.all) {
-    const Eigen::Matrix3d moved = rotation_of(motion_of(motion, side)) - Eigen::Matrix3d::Identity();
-    squares += moved.transpose() * moved;
-  }
-  const SymmetricEigen<3> eigen = symmetric_eigen<3>(squares);
-  return {eigen.vectors.col(0),
-          std::sqrt(std::max(0.0, eigen.values[0]) / static_cast<double>(motions.all.size()))};
-}
-
 Tilting tilting(const Instants& instants, Side side, const FlatOptions& options) {
   const int stride = std::max(1, static_cast<int>(instants.size() / options.parts));
   const Motions motions = motions_of(instants, {}, {}, stride, options.most);
   if (motions.all.size() < options.least) return {};
   const Side plane = side == Side::a ? Side::b : Side::a;
-  const auto [axis, tilt] = stillest_axis(motions, side);
-  const Eigen::Vector3d normal = stillest_axis(motions, plane).first;
-  const auto about = [](const Eigen::Vector3d& up, const QuaternionVector& q) {
-    return 2 * std::atan2(up.dot(q.tail<3>()), q[0]);
-  };
-  double same = 0, opposite = 0;  // either end of an axis may be up
-  for (const Motion& motion : motions.all) {
-    const double turned = about(axis, motion_of(motion, side).real),
-                 in_plane = about(normal, motion_of(motion, plane).real);
-    same += std::pow(turned - in_plane, 2);
-    opposite += std::pow(turned + in_plane, 2);
-  }
-  return {tilt, std::sqrt(std::min(same, opposite) / static_cast<double>(motions.all.size()))};
+  const TurningAxis tilts = turning_axis(motions, side), level = turning_axis(motions, plane);
+  return {tilts.tilt, turning_difference(motions, side == Side::a ? tilts.axis : level.axis,
+                                         side == Side::a ? level.axis : tilts.axis)};
 }
 
 Flatness flatness(const Trajectory& trajectory, const FlatOptions& options) {

@@ -32,6 +32,7 @@
 #include "diagnosis/streams/stamps_in_bursts.hpp"
 #include "diagnosis/streams/stream_check.hpp"
 #include "diagnosis/streams/turning_alike.hpp"
+#include "diagnosis/streams/two_dimensions.hpp"
 #include "diagnosis/verdict/besides.hpp"
 #include "diagnosis/verdict/ends_of_lines.hpp"
 #include "diagnosis/verdict/foreseen.hpp"
@@ -196,6 +197,11 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   Diagnosis result;
   result.fit = fit_of(evidence, answered, options);
   result.findings = foreseen.findings;
+  std::optional<TwoDimensions> level;
+  if (pairing.mode != Mode::planar) level = two_dimensions(motions);
+  if (level) result.assumed = level->assumed;
+  for (std::size_t i = 0; i < 6; ++i)
+    if (result.assumed[i]) answered.observability.observable[i] = false;
   // while the sensors stand, noise would be compared with noise
   const Motions moving = without_rest(motions, to_pose(answered.T_a_b));
   const RobustFit at_answer = evaluated(moving, answered.T_a_b);
@@ -213,6 +219,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   add_what_is_beside(foreseen, options, wrong_stream, answered, result);
   misfit = where_known(misfit, moving, answered, best, result.findings);
   result.findings.insert(result.findings.begin(), foreseen.frozen.begin(), foreseen.frozen.end());
+  if (level) result.findings.push_back(std::move(level->finding));
   judge(result, answered, misfit, options);
   return result;
 }
