@@ -140,6 +140,27 @@ TEST(SampleMistakes, AMountingThatSlipsIsNamedWithTheAnswerAfterIt) {
         }
 }
 
+/// The answer of all samples is near neither place.
+TEST(SampleMistakes, ALargeSlipIsNamedAndSamplesThatAgreeBadlyAreDoubtful) {
+  for (const std::size_t n : {8u, 12u, 30u})
+    for (const double size : {0.1, 0.2, 0.4})
+      for (const bool target : {false, true})
+        for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+          const SimulatedSamples drawn = arm(n, seed);
+          const Pose by{rotation_exp({0, 0, size * 2}), {size, size / 2, 0}};
+          const Calibration found = calibrate_samples(slipped(drawn, n / 2, by, target)).calibration;
+          EXPECT_GE(found.verdict, Verdict::doubtful)
+              << n << " " << size << " " << target << " " << seed << " " << found.reason;
+          if (n < 12) continue;  // six poses and twelve numbers for each part
+          const Finding* slip = find(found, "mount_moved");
+          ASSERT_NE(slip, nullptr) << n << " " << size << " " << target << " " << seed;
+          const Pose after = target ? to_pose(drawn.X) : to_pose(drawn.X) * by;
+          // of six or fifteen poses
+          EXPECT_LT(slip->T_a_b->rotation.angularDistance(after.rotation), n < 30 ? 2 * degree : degree);
+          EXPECT_LT((slip->T_a_b->translation - after.translation).norm(), n < 30 ? 0.06 : 0.02);
+        }
+}
+
 TEST(SampleMistakes, ASlipOfACentimetreIsNamedAndTheAnswerDependsOnNoOrder) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const SimulatedSamples drawn = arm(60, seed);

@@ -20,6 +20,7 @@
 #include "samples/agreeing.hpp"
 #include "samples/both_lists.hpp"
 #include "samples/faults.hpp"
+#include "samples/large_slip.hpp"
 #include "samples/leave_one_out.hpp"
 #include "samples/readings.hpp"
 #include "samples/slip.hpp"
@@ -158,9 +159,14 @@ std::vector<Finding> explanations(const Judged& judged, bool agree, const Sample
   const bool may_slip = std::all_of(findings.begin(), findings.end(), [](const Finding& finding) {
     return finding.code == "scale" && !finding.certain;
   });
-  if (may_slip)
-    add(find_slip(judged.set, judged.agreeing, judged.order, judged.rows,
-                  options.diagnosis.unit == LengthUnit::metres));
+  if (may_slip) {
+    std::optional<Finding> slip =
+        find_large_slip(judged.set, judged.agreeing.fit, judged.order, judged.rows, options);
+    if (!slip)
+      slip = find_slip(judged.set, judged.agreeing, judged.order, judged.rows,
+                       options.diagnosis.unit == LengthUnit::metres);
+    add(std::move(slip));
+  }
   if (findings.empty() && agree) add(both_inverted(judged.samples, judged.set, judged.agreeing, options));
   add(not_in_metres(judged.set, judged.agreeing.fit, options));
   return findings;
@@ -205,6 +211,14 @@ void judge_samples(const Judged& judged, const SampleOptions& options, Calibrati
       agree_by_chance(judged.set, judged.agreeing.fit.noise)) {
     diagnosis.verdict = Verdict::doubtful;
     diagnosis.reason = "So few samples may agree as badly by chance: take ten and more.";
+  }
+  if (diagnosis.verdict < Verdict::doubtful && !little &&
+      agree_badly(judged.set, judged.agreeing.fit.noise)) {
+    diagnosis.verdict = Verdict::doubtful;
+    diagnosis.reason =
+        "These samples agree badly: what one of them leaves unexplained is larger than errors of an arm or "
+        "of a "
+        "detector are. Make sure that the rows belong together and that nothing moved meanwhile.";
   }
   calibration.verdict = diagnosis.verdict;
   calibration.reason = std::move(diagnosis.reason);

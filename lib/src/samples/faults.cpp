@@ -60,8 +60,11 @@ std::optional<Finding> turns_too_small(std::span<const PoseSample> samples, cons
 }
 
 bool agree_by_chance(const SampleSet& set, const SampleNoise& noise, const ChanceOptions& options) {
-  const double largest = std::max(std::sqrt(noise.rotation), std::sqrt(noise.translation) / set.length());
-  return set.units() < options.few && largest > options.much_noise;
+  return set.units() < options.few && largest_noise(set, noise) > options.much_noise;
+}
+
+bool agree_badly(const SampleSet& set, const SampleNoise& noise, const ChanceOptions& options) {
+  return largest_noise(set, noise) > options.too_much_noise;
 }
 
 bool given_twice(const SampleSet& set, std::span<const PoseSample> samples) {

@@ -39,10 +39,16 @@ std::optional<Finding> turns_too_small(std::span<const PoseSample> samples, cons
 struct ChanceOptions {
   std::size_t few = 8;       ///< units; as many and more do not agree by chance
   double much_noise = 0.03;  ///< standard deviation of one sample, in parts of the length or in radians
+  /// Any number of samples agrees badly from here on: a target that was moved half-way by 10 to 20 cm leaves
+  /// 0.1 and more, and twenty samples of it were `incomplete` without a word.
+  double too_much_noise = 0.09;
 };
 
 /// Whether so few samples would agree as badly if they did not belong together.
 bool agree_by_chance(const SampleSet& set, const SampleNoise& noise, const ChanceOptions& options = {});
+
+/// Whether the noise of one sample is larger than that of any arm or detector.
+bool agree_badly(const SampleSet& set, const SampleNoise& noise, const ChanceOptions& options = {});
 
 /// Whether the poses of both lists are the same to the digits that files keep, read alike or one as the
 /// inverse.

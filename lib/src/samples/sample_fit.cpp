@@ -315,6 +315,10 @@ DualQuaternion target_at(const SampleSet& set, std::span<const std::size_t> chos
   return mean_target(set, chosen, signs_towards(set, chosen, fit), X);
 }
 
+double largest_noise(const SampleSet& set, const SampleNoise& noise) {
+  return std::max(std::sqrt(noise.rotation), std::sqrt(noise.translation) / set.length());
+}
+
 Balance balance_of(const SampleNoise& noise) {
   return {1, noise.rotation / noise.translation};
 }

@@ -76,6 +76,9 @@ bool clearly_better(const SampleFit& one, const SampleFit& other);
 DualQuaternion target_at(const SampleSet& set, std::span<const std::size_t> chosen, const SampleFit& fit,
                          const DualQuaternion& X);
 
+/// Standard deviation of one sample, in radians or in parts of the length: the larger one.
+double largest_noise(const SampleSet& set, const SampleNoise& noise);
+
 /// The balance of cost_matrix() for a noise.
 Balance balance_of(const SampleNoise& noise);
 
