@@ -264,6 +264,9 @@ TEST_F(Commands, TheCureOfAnOptionIsToLeaveItOut) {
   EXPECT_THAT(cures(" --invert-b"), HasSubstr("leave out --invert-b"));
   EXPECT_THAT(cures(" --invert-a --invert-b"), HasSubstr("leave out --invert-a and --invert-b"));
   EXPECT_THAT(cures(" --invert-a --invert-b"), HasSubstr("are sensor-to-world already"));
+  EXPECT_THAT(cures(" --quaternion-order-b xyzw"), HasSubstr("leave out --quaternion-order-b"));
+  EXPECT_THAT(cures(" --quaternion-order-a xyzw --quaternion-order-b xyzw"),
+              HasSubstr("leave out --quaternion-order-a and --quaternion-order-b"));
   EXPECT_THAT(cures(" --scale 2"), HasSubstr("leave out --scale\n"));
   EXPECT_THAT(cures(" --scale-b 3"), HasSubstr("leave out --scale-b\n"));
 }

@@ -62,6 +62,33 @@ void word_inverted_both(Finding& finding, const Inverted& given) {
   say(finding, std::move(words));
 }
 
+/// An option exchanges the columns of quaternions that were right: the two orders undo each other.
+bool undone_by(const Finding& finding, QuaternionOrder given) {
+  const bool to_xyzw = finding.words.cure.find("xyzw") != std::string::npos;
+  return given == (to_xyzw ? QuaternionOrder::wxyz : QuaternionOrder::xyzw);
+}
+
+void word_quaternion_order(Finding& finding, char which, QuaternionOrder given) {
+  if (!undone_by(finding, given)) return;
+  FindingWords words = finding.words;
+  words.claim = fmt::format(
+      "The quaternions of {{{}}} are in the order of its format, --quaternion-order-{} exchanges their "
+      "columns",
+      which, which);
+  const bool inverted = words.cure.find("--invert-") != std::string::npos;
+  words.cure = fmt::format("leave out --quaternion-order-{}", which) +
+               (inverted ? fmt::format(" and give --invert-{}", which) : "");
+  say(finding, std::move(words));
+}
+
+void word_quaternion_order_both(Finding& finding, QuaternionOrder of_a, QuaternionOrder of_b) {
+  if (!undone_by(finding, of_a) || !undone_by(finding, of_b)) return;
+  FindingWords words = finding.words;
+  words.claim = "The quaternions of both streams are in the order of their formats";
+  words.cure = "leave out --quaternion-order-a and --quaternion-order-b";
+  say(finding, std::move(words));
+}
+
 /// The factor was given: another one takes its place.
 void word_scale(Finding& finding, const CalibrationOptions& options, const std::string& option) {
   if (!finding.value || !(*finding.value > 0)) return;
@@ -105,6 +132,13 @@ void word_scale_of(Finding& finding, const CalibrationOptions& options, const st
     word_scale_beyond_range(finding, options, option, calibration.scale->scale);
 }
 
+void word_orders(Finding& finding, const CalibrationOptions& options) {
+  const QuaternionOrder a = options.read_a.quaternion_order, b = options.read_b.quaternion_order;
+  if (finding.code == "quaternion_order_a") word_quaternion_order(finding, 'a', a);
+  if (finding.code == "quaternion_order_b") word_quaternion_order(finding, 'b', b);
+  if (finding.code == "quaternion_order_both") word_quaternion_order_both(finding, a, b);
+}
+
 }  // namespace
 
 void word_for_options(const CalibrationOptions& options, const std::string& scale_option,
@@ -112,6 +146,7 @@ void word_for_options(const CalibrationOptions& options, const std::string& scal
   const Inverted given = inverted_by(options);
   reword(calibration, [&](Finding& finding) {
     word_scale_of(finding, options, scale_option, calibration);
+    word_orders(finding, options);
     if (!given.a && !given.b) return;
     if (finding.code == "inverted_a") word_inverted(finding, 'a', given);
     if (finding.code == "inverted_b") word_inverted(finding, 'b', given);
@@ -132,6 +167,7 @@ void word_for_options_of_samples(const CalibrationOptions& options, const std::s
           "leave out --eye-to-hand", finding.words.evidence);
     if (eye_to_hand) return;
     word_scale_of(finding, options, scale_option, calibration);
+    word_orders(finding, options);
     if (!given.a && !given.b) return;
     for (const char which : {'a', 'b'}) {
       if (finding.code != std::string("inverted_") + which) continue;
