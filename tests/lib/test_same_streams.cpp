@@ -58,6 +58,29 @@ TEST(SameStreams, RotationsThatWereMadeFromTheOthersAreNamed) {
       << finding->message;
 }
 
+/// The odometry, and the pose in a map that corrects it each four seconds: where the odometry stands or goes
+/// straight on the map does not, which is no gap that was filled in.
+TEST(SameStreams, APoseInAMapAndTheOdometryThatItWasMadeFromAreNamed) {
+  SimulationOptions options;
+  options.poses = 2401;
+  options.rate = 40;  // from row to row the vehicle hardly turns
+  options.relative_noise = 0.01;
+  const testing::Streams right = testing::simulated_drive(options);
+  Trajectory in_map = right.a;
+  DualQuaternion correction = to_dual_quaternion(Pose{});
+  for (std::size_t i = 0; i < in_map.size(); ++i) {
+    const double size = (i / 160) % 2 == 0 ? 0.01 : -0.02;
+    if (i % 160 == 80)
+      correction =
+          to_dual_quaternion(Pose{rotation_exp({0, 0, size}), {3 * size, -2 * size, 0}}) * correction;
+    in_map[i].pose = canonical_sign(normalized(correction * in_map[i].pose));
+  }
+  const Calibration calibration = calibrate(right.a, in_map);
+  EXPECT_NE(find(calibration, "same_stream"), nullptr) << calibration.reason;
+  EXPECT_EQ(find(calibration, "filled_a"), nullptr) << calibration.reason;
+  EXPECT_EQ(find(calibration, "filled_b"), nullptr) << calibration.reason;
+}
+
 /// Made from a by any extrinsic, at stamps of its own between two poses of a.
 TEST(SameStreams, AStreamThatWasInterpolatedFromTheOtherIsNamed) {
   const testing::Streams right = drive(Terrain::rough);

@@ -61,14 +61,7 @@ bool are_copies(const Timed& rows, const Timed& others, double max_gap,
          median(std::move(angles)) >= options.turning;
 }
 
-}  // namespace
-
-std::optional<Finding> copied_rotations(const Trajectory& a, const Trajectory& b, const ClockModel& clock,
-                                        double max_gap, const CopiedRotationsOptions& options) {
-  if (a.empty() || b.empty()) return std::nullopt;
-  const Timed of_a{a, Times(a, a.front().time_us, ClockModel{})}, of_b{b, Times(b, a.front().time_us, clock)};
-  if (!are_copies(of_b, of_a, max_gap, options) && !are_copies(of_a, of_b, max_gap, options))
-    return std::nullopt;
+Finding rotations_of_one() {
   Finding finding;
   finding.code = "same_stream";
   finding.message =
@@ -79,6 +72,23 @@ std::optional<Finding> copied_rotations(const Trajectory& a, const Trajectory& b
       "Give what each sensor measured by itself; ignore this where the rotations were simulated without "
       "noise.";
   return finding;
+}
+
+}  // namespace
+
+std::optional<Finding> copied_rotations(const Trajectory& a, const Trajectory& b, const ClockModel& clock,
+                                        double max_gap, const CopiedRotationsOptions& options) {
+  if (a.empty() || b.empty()) return std::nullopt;
+  const Timed of_a{a, Times(a, a.front().time_us, ClockModel{})}, of_b{b, Times(b, a.front().time_us, clock)};
+  if (!are_copies(of_b, of_a, max_gap, options) && !are_copies(of_a, of_b, max_gap, options))
+    return std::nullopt;
+  return rotations_of_one();
+}
+
+std::optional<Finding> exactly_copied_rotations(const Fit& fit, const Motions& motions,
+                                                const CopiedRotationsOptions& options) {
+  if (!(fit.rotation_median < options.exact) || !(motions.rotation > options.turning)) return std::nullopt;
+  return rotations_of_one();
 }
 
 }  // namespace egocal::detail

@@ -18,11 +18,18 @@ struct CopiedRotationsOptions {
   /// Half of the angles agree to less [rad]: rounding, and a hundredth of what two sensors leave.
   double of_rounding = 1e-5;
   double turning = 0.01;  ///< the median angle, at least [rad]: a thousand times the above
+  /// Residuals of rotations that are rounding of doubles [rad].
+  double exact = 1e-9;
 };
 
 /// same_stream, uncertain: between the rows of one stream the other one, interpolated linearly, turns by the
 /// same angles to rounding. Whatever the extrinsic, two sensors never do. clock: of b. max_gap: [s].
 std::optional<Finding> copied_rotations(const Trajectory& a, const Trajectory& b, const ClockModel& clock,
                                         double max_gap, const CopiedRotationsOptions& options = {});
+
+/// The same of motions that turn by `turning`, whose rows do not: half of their rotations agree to rounding
+/// of doubles, as those of an odometry and of a map that corrects it now and then.
+std::optional<Finding> exactly_copied_rotations(const Fit& fit, const Motions& motions,
+                                                const CopiedRotationsOptions& options = {});
 
 }  // namespace egocal::detail

@@ -104,13 +104,23 @@ void add_same_stream(const Evidence& evidence, const Answered& answered, const D
     checks.close *= of_a_metre;
     checks.known_translation *= of_a_metre;
   }
-  if (std::any_of(result.findings.begin(), result.findings.end(), certain_of_either)) return;
+  const auto filled = [](const Finding& one) { return one.code.starts_with("filled_"); };
+  if (std::any_of(result.findings.begin(), result.findings.end(),
+                  [&](const Finding& one) { return certain_of_either(one) && !filled(one); }))
+    return;
   std::vector<Finding> found = made_from_each_other(result.fit);
   if (found.empty())
     if (std::optional<Finding> rotations = copied_rotations(evidence.streams.a, evidence.streams.b,
                                                             evidence.clock, evidence.streams.max_gap))
       found.push_back(*std::move(rotations));
-  if (found.empty()) found = in_one_frame(answered, checks);
+  if (found.empty())
+    if (std::optional<Finding> rotations =
+            exactly_copied_rotations(result.fit, evidence.given.explained.motions))
+      found.push_back(*std::move(rotations));
+  // where a map corrects an odometry, the odometry goes straight on
+  if (!found.empty()) std::erase_if(result.findings, filled);
+  if (found.empty() && std::none_of(result.findings.begin(), result.findings.end(), filled))
+    found = in_one_frame(answered, checks);
   if (!has(result.findings, "same_stream"))
     result.findings.insert(result.findings.end(), found.begin(), found.end());
 }
