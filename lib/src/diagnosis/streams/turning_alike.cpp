@@ -45,7 +45,8 @@ Finding unrelated(double correlation) {
       format("The two streams do not turn together (correlation %.2f): they are not of one rigid "
              "body, or not of one drive.",
              correlation),
-      "Check that both files are of the same drive and that both sensors are rigidly mounted.");
+      "Check that both files are of the same drive, that both sensors are rigidly mounted, and that the "
+      "rotations of both have the units and the order that their format says.");
 }
 
 Finding too_little_motion(std::size_t motions, const DiagnosisOptions& options) {
