@@ -161,6 +161,22 @@ TEST(SampleMistakes, ALargeSlipIsNamedAndSamplesThatAgreeBadlyAreDoubtful) {
         }
 }
 
+/// Those after it are the minority, and are rejected as wrong samples.
+TEST(SampleMistakes, ALargeSlipThatLeavesAMinorityIsNamed) {
+  for (const std::size_t n : {30u, 60u})
+    for (const double part : {0.3, 0.65, 0.75})
+      for (const bool target : {false, true})
+        for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+          const SimulatedSamples drawn = arm(n, seed);
+          const auto at = static_cast<std::size_t>(part * static_cast<double>(n));
+          const Pose by{rotation_exp({0, 0, 0.4}), {0.2, 0.1, 0}};
+          const Calibration found = calibrate_samples(slipped(drawn, at, by, target)).calibration;
+          EXPECT_GE(found.verdict, Verdict::doubtful)
+              << n << " " << part << " " << target << " " << seed << " " << found.reason;
+          EXPECT_NE(find(found, "mount_moved"), nullptr) << n << " " << part << " " << target << " " << seed;
+        }
+}
+
 TEST(SampleMistakes, ASlipOfACentimetreIsNamedAndTheAnswerDependsOnNoOrder) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const SimulatedSamples drawn = arm(60, seed);

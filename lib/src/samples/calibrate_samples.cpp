@@ -160,11 +160,14 @@ std::vector<Finding> explanations(const Judged& judged, bool agree, const Sample
     return finding.code == "scale" && !finding.certain;
   });
   if (may_slip) {
-    std::optional<Finding> slip =
-        find_large_slip(judged.set, judged.agreeing.fit, judged.order, judged.rows, options);
-    if (!slip)
-      slip = find_slip(judged.set, judged.agreeing, judged.order, judged.rows,
-                       options.diagnosis.unit == LengthUnit::metres);
+    std::optional<Finding> slip = find_slip(judged.set, judged.agreeing, judged.order, judged.rows,
+                                            options.diagnosis.unit == LengthUnit::metres);
+    // a linear test gives the answer after a large slip to centimetres only
+    const bool large = largest_noise(judged.set, judged.agreeing.fit.noise) > LargeSlipOptions().least_noise;
+    if (!slip || large)
+      if (std::optional<Finding> found =
+              find_large_slip(judged.set, judged.agreeing, judged.order, judged.rows, options))
+        slip = std::move(found);
     add(std::move(slip));
   }
   if (findings.empty() && agree) add(both_inverted(judged.samples, judged.set, judged.agreeing, options));

@@ -99,15 +99,45 @@ Finding worded(const SampleSet& set, const Division& division, std::size_t row, 
   return finding;
 }
 
+/// Where the samples that count end, or begin, and no other one lies beyond; 0: nowhere.
+std::size_t where_all_are_rejected(const std::vector<std::size_t>& chosen,
+                                   const std::vector<std::size_t>& order) {
+  const auto counts = [&](std::size_t k) {
+    return std::binary_search(chosen.begin(), chosen.end(), order[k]);
+  };
+  std::size_t at = 0;
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    if (counts(k) == counts(k - 1)) continue;
+    if (at > 0) return 0;
+    at = k;
+  }
+  return at;
+}
+
+std::optional<Finding> rejected_from_a_row_on(const SampleSet& set, const AgreeingSamples& agreeing,
+                                              const std::vector<std::size_t>& order,
+                                              const std::vector<std::size_t>& rows,
+                                              const SampleOptions& options, const LargeSlipOptions& tuning) {
+  const std::size_t at = where_all_are_rejected(agreeing.chosen, order);
+  if (at == 0) return std::nullopt;
+  const FitSettings settings = settings_of(options);
+  const Division division =
+      divided(set, fit_samples(set, all_of(set), settings), order, at, settings, tuning);
+  if (!(division.gain > tuning.least_gain_of_rejected)) return std::nullopt;
+  return worded(set, division, rows[at], options.diagnosis.unit == LengthUnit::metres, true);
+}
+
 }  // namespace
 
-std::optional<Finding> find_large_slip(const SampleSet& set, const SampleFit& fit,
+std::optional<Finding> find_large_slip(const SampleSet& set, const AgreeingSamples& agreeing,
                                        const std::vector<std::size_t>& order,
                                        const std::vector<std::size_t>& rows, const SampleOptions& options,
                                        const LargeSlipOptions& tuning) {
   if (set.units() < 2 * tuning.least_part) return std::nullopt;
-  if (!(largest_noise(set, fit.noise) > tuning.least_noise)) return std::nullopt;
-  const Division division = best_division(set, fit, order, settings_of(options), tuning);
+  if (std::optional<Finding> found = rejected_from_a_row_on(set, agreeing, order, rows, options, tuning))
+    return found;
+  if (!(largest_noise(set, agreeing.fit.noise) > tuning.least_noise)) return std::nullopt;
+  const Division division = best_division(set, agreeing.fit, order, settings_of(options), tuning);
   if (!(division.gain > tuning.least_gain)) return std::nullopt;
   return worded(set, division, rows[division.at], options.diagnosis.unit == LengthUnit::metres,
                 division.gain > tuning.certain_gain);

@@ -24,11 +24,15 @@ struct LargeSlipOptions {
   /// Two parts leave the variance smaller by this factor, so that errors of a lens or of the lengths of an
   /// arm, which also differ from part to part, are no slip. From the second one on it is certain.
   double least_gain = 16, certain_gain = 100;
+  /// Samples that do not count, exactly those before or after some row, are a slip on their own: of thirty
+  /// samples a tenth would be the last ones by chance once in 4,000 sets. Both parts are then better by this
+  /// factor.
+  double least_gain_of_rejected = 2;
 };
 
 /// Finding mount_moved: the samples before some row and from it on agree among themselves, with two places of
 /// the camera or of the target. order, rows, metres: as of find_slip(). T_a_b: the answer after the slip.
-std::optional<Finding> find_large_slip(const SampleSet& set, const SampleFit& fit,
+std::optional<Finding> find_large_slip(const SampleSet& set, const AgreeingSamples& agreeing,
                                        const std::vector<std::size_t>& order,
                                        const std::vector<std::size_t>& rows, const SampleOptions& options,
                                        const LargeSlipOptions& tuning = {});
