@@ -31,6 +31,21 @@ TEST(ExchangedStreams, AreNamed) {
   }
 }
 
+/// Half a turn about the vertical makes yaw 90 of it yaw -90, which is its inverse, at another place.
+TEST(ExchangedStreams, AreNotNamedWhereASensorThatLooksAsideWasTurnedRound) {
+  const Pose aside{rotation_exp({0, 0, 1.5707963}), {0.5, 0, 0.2}},
+      round{rotation_exp({0, 0, 3.1415926}), {0, 0, 0}};
+  for (const Terrain terrain : {Terrain::flat, Terrain::rough})
+    for (const std::uint64_t seed : {1, 2}) {
+      testing::Streams wrong = drive(terrain, seed);
+      const DualQuaternion other = conjugate(wrong.T) * to_dual_quaternion(aside);
+      for (StampedPose& stamped : wrong.b) stamped.pose = canonical_sign(normalized(stamped.pose * other));
+      wrong.b = testing::knocked(wrong.b, 0.5, round);
+      for (const Finding& finding : calibrate(wrong.a, wrong.b).findings)
+        EXPECT_EQ(finding.message.find("exchanged"), std::string::npos) << seed << " " << finding.message;
+    }
+}
+
 TEST(ExchangedStreams, AreNotNamedWhereASensorWasTurnedRound) {
   const Pose round{rotation_exp({0, 0, 3}), {0.3, 0, 0}};
   for (const std::uint64_t seed : {1, 2}) {

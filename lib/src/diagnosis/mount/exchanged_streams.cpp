@@ -18,13 +18,13 @@ bool exchanged_streams(const Motions& motions, double time, const DiagnosisOptio
   const std::size_t n = motions.all.size();
   if (at < options.motions.least || n - at < options.motions.least) return false;
   const Motions before = part_of(motions, 0, at), after = part_of(motions, at, n);
-  const auto is_inverse = [&](const Motions& part, const Motions& other) {
-    const Pose T = to_pose(robust_fit(part, options.fit).T);
-    const double left = std::sqrt(evaluated(other, to_dual_quaternion(inverse(T))).typical);
-    return left < tuning.most &&
-           left < tuning.part * std::sqrt(evaluated(other, to_dual_quaternion(T)).typical);
+  const RobustFit of_before = robust_fit(before, options.fit), of_after = robust_fit(after, options.fit);
+  const auto is_inverse = [&](const RobustFit& part, const Motions& other, const RobustFit& of_other) {
+    const double left = std::sqrt(evaluated(other, to_dual_quaternion(inverse(to_pose(part.T)))).typical);
+    return left < tuning.most && left < tuning.than_own * std::sqrt(of_other.typical) &&
+           left < tuning.part * std::sqrt(evaluated(other, part.T).typical);
   };
-  return is_inverse(before, after) && is_inverse(after, before);
+  return is_inverse(of_before, after, of_after) && is_inverse(of_after, before, of_before);
 }
 
 }  // namespace egocal::detail
