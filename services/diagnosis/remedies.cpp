@@ -53,7 +53,7 @@ std::string remedy_of(const bus::Rig& rig, const bus::PairConfig& pair, const Fi
            (finding.remedy.find("--invert-") != std::string::npos
                 ? " It also has to send the inverse: poses of the sensor in its start frame."
                 : "");
-  if (code == "scale_change")
+  if (code == "scale_change" && finding.time)
     return "Live, a session has one scale: reset the pair (key r in the monitor) after it has changed. In a "
            "recording egocal solve --scale-b auto finds the factors, --scale auto where " +
            pair.b + " is in metres.";

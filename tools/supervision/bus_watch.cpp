@@ -119,8 +119,9 @@ struct BusWatch::Shared {
                                [](const Process& x, const Process& y) { return x.heard_ms < y.heard_ms; });
       entry->pid = -1;
     }
-    entry->announced_s = announced.count();
+    // read in the other order: who sees that no silence is announced any more has seen this status
     entry->heard_ms = now_ms;
+    entry->announced_s = announced.count();
     entry->pid = pid;
   }
 };

@@ -114,8 +114,11 @@ class Supervisor {
     const auto passed = std::chrono::duration_cast<milliseconds>(now - watched_at_);
     watched_at_ = now;
     for (Child& child : children_) {
+      // before the time of the last status, which ends an announcement (BusWatch::Shared::heard)
+      const milliseconds announced =
+          options_.may_be_silent && child.pid > 0 ? options_.may_be_silent(child.pid) : milliseconds(0);
       const std::optional<milliseconds> since = heard_ago(child);
-      if (child.program.foreground || !since || computes_as_announced(child, *since)) continue;
+      if (child.program.foreground || !since || computes_as_announced(child, *since, announced)) continue;
       const std::string& name = child.program.name;
       switch (child.silence.look(*since, passed, any_heard, options_.silence)) {
         case Silence::Next::nothing:
@@ -139,9 +142,8 @@ class Supervisor {
   }
 
   /// One that is stopped meanwhile, or waits for something, hangs as others do.
-  bool computes_as_announced(const Child& child, milliseconds silent) const {
-    return options_.may_be_silent && silent >= options_.silence.silent &&
-           silent <= options_.may_be_silent(child.pid) && computes(child.pid);
+  bool computes_as_announced(const Child& child, milliseconds silent, milliseconds announced) const {
+    return silent >= options_.silence.silent && silent <= announced && computes(child.pid);
   }
 
   bool any_has_work() const {

@@ -73,7 +73,7 @@ std::string cure(const Finding& found, const RigWords& words) {
            (found.remedy.find("--invert-") != std::string::npos
                 ? " Its poses are world-to-sensor: give the inverse of each."
                 : "");
-  if (code == "scale_change")
+  if (code == "scale_change" && found.time)
     return "Calibrate " + words.name_a + " and " + words.name_b +
            " by themselves: solve A B --scale-b auto finds the factors, --scale auto where " + words.name_b +
            " is in metres.";

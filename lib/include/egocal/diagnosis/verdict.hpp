@@ -72,8 +72,8 @@ struct Finding {
   std::string remedy;         ///< option or action that cures it
   double improvement = 1;     ///< squared residuals as given / under this explanation
   std::optional<Pose> T_a_b;  ///< the answer under this explanation, where it has one
-  /// mount_moved, scale_change, unrelated, filled_a|_b, clock_step, and inverted_both where the mounting
-  /// would have moved at that time: since the first pose of a [s].
+  /// mount_moved, scale_change (but of lengths that are lost in turns), unrelated, filled_a|_b, clock_step,
+  /// and inverted_both where the mounting would have moved at that time: since the first pose of a [s].
   std::optional<double> time;
   std::optional<double>
       value;  ///< scale and units: factor of b's lengths; clock_offset: added to b [s];

@@ -115,10 +115,11 @@ void add_same_stream(const Evidence& evidence, const Answered& answered, const D
       found.push_back(*std::move(rotations));
   if (found.empty())
     if (std::optional<Finding> rotations =
-            exactly_copied_rotations(result.fit, evidence.given.explained.motions))
+            exactly_copied_rotations(result.fit, evidence.given.explained.motions)) {
       found.push_back(*std::move(rotations));
-  // where a map corrects an odometry, the odometry goes straight on
-  if (!found.empty()) std::erase_if(result.findings, filled);
+      // where a map corrects an odometry, the odometry goes straight on
+      std::erase_if(result.findings, filled);
+    }
   if (found.empty() && std::none_of(result.findings.begin(), result.findings.end(), filled))
     found = in_one_frame(answered, checks);
   if (!has(result.findings, "same_stream"))

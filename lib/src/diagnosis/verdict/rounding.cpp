@@ -34,9 +34,11 @@ Trajectory rounded(Trajectory trajectory, const Written& written, int offset) {
   return trajectory;
 }
 
-/// Steps of one written unit length and of a position of this stream's, of the usual motion.
+/// Steps of one written unit length and of the farthest position of this stream, of the usual motion.
 bool matters(const Trajectory& trajectory, const Written& written, const Motions& motions, double least) {
-  const double place = trajectory.empty() ? 0 : position_of(trajectory.front().pose).cwiseAbs().maxCoeff();
+  double place = 0;
+  for (const StampedPose& stamped : trajectory)
+    place = std::max(place, position_of(stamped.pose).cwiseAbs().maxCoeff());
   return written.rotation.step(1) > least * motions.rotation ||
          written.position.step(place) > least * motions.translation;
 }

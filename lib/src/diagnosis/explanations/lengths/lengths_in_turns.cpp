@@ -111,8 +111,9 @@ void name_lengths_in_turns(const Evidence& evidence, const Answered& answered,
   finding.T_a_b = to_pose(found->T_a_b);
   const char shorter = found->lost > 0 ? 'b' : 'a';
   say(finding,
-      format("The lengths of %s are too short while it turns, by %.0f %% at its usual turning", mark(shorter),
-             100 * std::abs(found->lost)),
+      format("Against those of %s the lengths of %s are too short while it turns, by %.0f %% at its usual "
+             "turning",
+             mark(shorter == 'a' ? 'b' : 'a'), mark(shorter), 100 * std::abs(found->lost)),
       format("Take the lengths of %s from a sensor that does not slip in turns: a factor for the whole drive "
              "leaves a wrong answer that fits.",
              mark(shorter)),
