@@ -14,7 +14,7 @@ namespace {
 /// Times the step. Multiples of a step are never in the middle of two multiples of an odd number of it.
 constexpr int coarser = 3;
 /// Variance that rounding to such steps adds, of that which the rounding before has made: n^2 - 1.
-constexpr double added = coarser * coarser - 1;
+constexpr double of_coarser = coarser * coarser - 1;
 
 /// The nearest of the numbers (coarser k + offset) step.
 double rounded(double x, double step, int offset) {
@@ -63,7 +63,7 @@ std::array<double, 6> rounding_stddev(const MiddlePart& part, const Instants& in
     const std::optional<AnswerChange> one = answer_change(instants, otherwise, T_a_b, change);
     if (!one) return stddev;
     // what is chance in each part is in the scatter between them
-    sum += (one->size.cwiseAbs2() - one->variance) / (added * coarser);
+    sum += (one->size.cwiseAbs2() - one->variance) / (of_coarser * coarser);
   }
   for (std::size_t i = 0; i < 6; ++i) stddev[i] = std::sqrt(std::max(0.0, sum[static_cast<Eigen::Index>(i)]));
   return stddev;
