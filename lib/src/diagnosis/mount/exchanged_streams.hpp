@@ -19,8 +19,8 @@ struct ExchangedStreamsOptions {
   double than_own = 1.5;
 };
 
-/// Whether the answer after `time` [s] is the inverse of the one before, in rotation and in
-/// place, which a mounting that moved is by chance alone. Motions as given.
+/// Whether the answer after `time` [s] is the inverse of the one before, in rotation and in place,
+/// which a mounting that moved is by chance alone. Motions as given.
 bool exchanged_streams(const Motions& motions, double time, const DiagnosisOptions& options,
                        const ExchangedStreamsOptions& tuning = {});
 
