@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <string>
 
-#include "diagnosis/words/wording.hpp"
+#include "samples/slip.hpp"
 #include "samples/trimmed_search.hpp"
 
 namespace egocal::detail {
@@ -82,21 +80,8 @@ Finding worded(const SampleSet& set, const Division& division, std::size_t row, 
                of_target = change_of(division.before.Y, division.after.Y);
   const bool target = of_target.size(set.length()) > of_camera.size(set.length());
   const Change& change = target ? of_target : of_camera;
-  Finding finding;
-  finding.code = "mount_moved";
-  finding.certain = certain;
-  finding.change = MountingChange::at_once;
-  finding.improvement = division.gain;
-  finding.T_a_b = to_pose(division.after.X);
-  finding.message = format(
-      "From about sample %zu on (in the order given) %s is elsewhere, by %s and %.2g deg: the squared "
-      "residuals "
-      "are %.3g times smaller with two places.",
-      row + 1, target ? "the target" : "the camera", length_in_words(change.shift, metres).c_str(),
-      change.turn * 180 / std::numbers::pi, division.gain);
-  finding.remedy =
-      format("Fasten camera and target. Calibrate the samples before and after %zu separately.", row + 1);
-  return finding;
+  return worded_slip({row, target, change.shift, change.turn, division.gain, to_pose(division.after.X)},
+                     metres, certain);
 }
 
 /// Where the samples that count end, or begin, and no other one lies beyond; 0: nowhere.

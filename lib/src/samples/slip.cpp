@@ -162,26 +162,6 @@ double gain_of_other_orders(const SampleSet& set, const std::vector<PlacedUnit>&
   return largest;
 }
 
-Finding worded_slip(const Slip& slip, std::size_t row, double gain, const SampleFit& fit, bool metres,
-                    bool certain) {
-  Finding finding;
-  finding.code = "mount_moved";
-  finding.certain = certain;
-  finding.change = MountingChange::at_once;
-  finding.improvement = gain;
-  finding.T_a_b = to_pose(frame_a_moved(fit.X, slip.after));
-  constexpr double degrees = 180 / std::numbers::pi;
-  const std::string size =
-      format("%s and %.2g deg", length_in_words(slip.shift, metres).c_str(), slip.turn * degrees);
-  finding.message = format(
-      "From about sample %zu on (in the order given) %s is elsewhere, by %s: the squared residuals are %.3g "
-      "times smaller with two places.",
-      row + 1, slip.of_target ? "the target" : "the camera", size.c_str(), gain);
-  finding.remedy =
-      format("Fasten camera and target. Calibrate the samples before and after %zu separately.", row + 1);
-  return finding;
-}
-
 std::optional<Finding> slip_among(const SampleSet& set, const std::vector<PlacedUnit>& units,
                                   const SampleFit& fit, double most_variance, bool metres,
                                   const SlipOptions& options) {
@@ -203,10 +183,31 @@ std::optional<Finding> slip_among(const SampleSet& set, const std::vector<Placed
   if (gain < options.least_gain) return std::nullopt;
   if (slip.gain < options.than_other_orders * gain_of_other_orders(set, units, undivided, options))
     return std::nullopt;
-  return worded_slip(slip, units[slip.at].row, gain, fit, metres, gain > options.certain_gain);
+  return worded_slip({units[slip.at].row, slip.of_target, slip.shift, slip.turn, gain,
+                      to_pose(frame_a_moved(fit.X, slip.after))},
+                     metres, gain > options.certain_gain);
 }
 
 }  // namespace
+
+Finding worded_slip(const FoundSlip& slip, bool metres, bool certain) {
+  constexpr double degrees = 180 / std::numbers::pi;
+  Finding finding;
+  finding.code = "mount_moved";
+  finding.certain = certain;
+  finding.change = MountingChange::at_once;
+  finding.improvement = slip.gain;
+  finding.T_a_b = slip.after;
+  finding.message = format(
+      "From about sample %zu on (in the order given) %s is elsewhere, by %s and %.2g deg: the squared "
+      "residuals "
+      "are %.3g times smaller with two places.",
+      slip.row + 1, slip.of_target ? "the target" : "the camera", length_in_words(slip.shift, metres).c_str(),
+      slip.turn * degrees, slip.gain);
+  finding.remedy = format("Fasten camera and target. Calibrate the samples before and after %zu separately.",
+                          slip.row + 1);
+  return finding;
+}
 
 std::optional<Finding> find_slip(const SampleSet& set, const AgreeingSamples& agreeing,
                                  const std::vector<std::size_t>& order, const std::vector<std::size_t>& rows,

@@ -29,6 +29,18 @@ struct SlipOptions {
   double as_good = 2;
 };
 
+/// What a finding says of a slip.
+struct FoundSlip {
+  std::size_t row = 0;  ///< of the first sample after it, from 0
+  bool of_target = false;
+  double shift = 0, turn = 0;  ///< [m, rad]
+  double gain = 1;             ///< of the squared residuals
+  Pose after;                  ///< the answer after it
+};
+
+/// The finding mount_moved of a slip. metres: what lengths are in, or units of their own.
+Finding worded_slip(const FoundSlip& slip, bool metres, bool certain);
+
 /// Finding mount_moved where the camera (another X) or the target (another Y) is elsewhere from some sample
 /// on. An F test at each place, linear around the fit, with Bonferroni's factor. order: samples in the order
 /// in which they were taken, of which `place` says the number of each for the reader (from 0). Only this
