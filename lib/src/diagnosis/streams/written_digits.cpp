@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/motions/reading.hpp"
 #include "egocal/geometry/pose.hpp"
 
 namespace egocal::detail {
