@@ -20,11 +20,6 @@ SampleNoise pooled(const SampleFit& before, const SampleFit& after) {
           mean(before.noise.translation, after.noise.translation)};
 }
 
-/// Squared residuals of one noise over those of another, rotation and position alike.
-double times_smaller(const SampleNoise& given, const SampleNoise& other) {
-  return std::sqrt(given.rotation / other.rotation) * std::sqrt(given.translation / other.translation);
-}
-
 struct Division {
   std::size_t at = 0;  ///< in the order given, first sample after it
   double gain = 0;     ///< of the variance
@@ -51,7 +46,7 @@ Division divided(const SampleSet& set, const SampleFit& all, const std::vector<s
   std::sort(second.begin(), second.end());
   Division division{at, 0, fit_samples(set, first, settings), fit_samples(set, second, settings)};
   if (division.before.dof > 0 && division.after.dof > 0)
-    division.gain = times_smaller(all.noise, pooled(division.before, division.after));
+    division.gain = improvement(all.noise, pooled(division.before, division.after));
   return division;
 }
 

@@ -300,9 +300,12 @@ SquaredResidual squared_residual(const SampleSet& set, std::size_t i, const Samp
   return {angle * angle, (position(y) - position(fit.Y)).squaredNorm()};
 }
 
+double improvement(const SampleNoise& given, const SampleNoise& other) {
+  return std::sqrt(given.rotation / other.rotation) * std::sqrt(given.translation / other.translation);
+}
+
 double improvement(const SampleFit& given, const SampleFit& other) {
-  return std::sqrt(given.noise.rotation / other.noise.rotation) *
-         std::sqrt(given.noise.translation / other.noise.translation);
+  return improvement(given.noise, other.noise);
 }
 
 bool clearly_better(const SampleFit& one, const SampleFit& other) {

@@ -67,7 +67,8 @@ struct SquaredResidual {
 };
 SquaredResidual squared_residual(const SampleSet& set, std::size_t i, const SampleFit& fit);
 
-/// Squared residuals of one fit over those of another, rotation and position alike.
+/// Squared residuals of one noise over those of another, rotation and position alike.
+double improvement(const SampleNoise& given, const SampleNoise& other);
 double improvement(const SampleFit& given, const SampleFit& other);
 /// Not the same minimum again but for rounding.
 bool clearly_better(const SampleFit& one, const SampleFit& other);

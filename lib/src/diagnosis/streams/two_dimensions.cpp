@@ -17,16 +17,16 @@ Finding flat_both(const std::array<bool, 6>& assumed) {
   std::string names;
   for (std::size_t i = 3; i < 6; ++i)
     if (assumed[i]) names += (names.empty() ? "" : ", ") + std::string(direction_names[i]);
-  // the axis is none of a's: each angle has a part of what nobody measured
+  // the axis is none of a's: each angle has a part of what was not measured
   if (assumed[3] && assumed[4] && assumed[5]) names = "the tilt of that axis";
   Finding finding;
   finding.code = "flat_both";
   finding.certain = true;
   say(finding,
-      format("Both streams are in two dimensions: each turns about one axis alone. Nobody measured %s or the "
-             "height: "
-             "both files assume them.",
-             names.c_str()),
+      format(
+          "Both streams are in two dimensions: each turns about one axis alone. Neither measured %s or the "
+          "height: both files assume them.",
+          names.c_str()),
       "Measure these otherwise, or take them from the ground planes (--planar --plane-a --plane-b).");
   return finding;
 }

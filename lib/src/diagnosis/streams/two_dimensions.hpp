@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Both streams in two dimensions, as wheel odometry beside a SLAM of flat scans: what the ground is, both
-// files assume. The motions then agree about roll and pitch without an error, as nobody measured them.
+// files assume. The motions then agree about roll and pitch without an error, as neither measured them.
 #pragma once
 
 #include <array>
