@@ -142,7 +142,7 @@ bool lengths_fit(const verdict_t*, Bytes bytes) {
   Walk walk(bytes);
   walk.skip(4 * 8);
   for (int i = 0; i < 5; ++i) walk.string();
-  walk.skip(24 + 32 + 2 * 8 + fit_size);
+  walk.skip(24 + 32 + 6 + 2 * 48 + 2 * 8 + fit_size);
   const std::size_t findings = walk.count(3 * least_string + 1 + finding_numbers);
   for (std::size_t i = 0; i < findings; ++i) {
     walk.string();

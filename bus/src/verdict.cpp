@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -19,6 +21,8 @@ namespace {
 
 /// Characters of a reason or a remedy: two long sentences.
 constexpr std::size_t max_sentence = 400;
+
+constexpr const char* self_contradiction = "verdict that contradicts itself";
 
 /// What cannot be a number on the wire is none.
 double finite_or_zero(double value) {
@@ -90,6 +94,29 @@ Checked<Fit> to_fit(const fit_t& message) {
   return {std::move(fit), {}};
 }
 
+void set_observability(const Diagnosis& diagnosis, const Judged& judged, verdict_t& message) {
+  for (std::size_t i = 0; i < 6; ++i) {
+    message.observable[i] = judged.observability.observable[i];
+    message.stddev[i] = judged.observability.stddev[i];
+    message.stddev_added[i] =
+        diagnosis.assumed[i] ? std::numeric_limits<double>::infinity() : diagnosis.timing_stddev[i];
+  }
+}
+
+/// Why the message cannot mean what it says; empty: it can.
+std::string take_observability(const verdict_t& message, ReceivedVerdict& received) {
+  Observability& observability = received.judged.observability;
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (!not_negative({message.stddev[i], message.stddev_added[i]})) return "standard deviation out of range";
+    observability.observable[i] = message.observable[i] != 0;
+    observability.stddev[i] = message.stddev[i];
+    received.diagnosis.assumed[i] = std::isinf(message.stddev_added[i]);
+    if (received.diagnosis.assumed[i] && observability.observable[i]) return self_contradiction;
+    if (!received.diagnosis.assumed[i]) received.diagnosis.timing_stddev[i] = message.stddev_added[i];
+  }
+  return {};
+}
+
 /// The words of "z yaw"; empty: one of them is no direction, or comes twice.
 std::optional<std::vector<std::string>> directions_in(const std::string& text) {
   std::vector<std::string> words;
@@ -121,6 +148,7 @@ verdict_t to_message(const Diagnosis& diagnosis, const Judged& judged) {
   message.verdict = to_string(diagnosis.verdict);
   message.reason = printable(diagnosis.reason, max_sentence);
   set_pose(judged.T_a_b, message.pos, message.quat);
+  set_observability(diagnosis, judged, message);
   message.utime_begin = judged.begin_us;
   message.utime_end = judged.end_us;
   const Fit& fit = diagnosis.fit;
@@ -169,6 +197,8 @@ Checked<ReceivedVerdict> to_verdict(const verdict_t& message) {
 
   ReceivedVerdict received;
   received.judged = {*T.value, message.utime_begin, message.utime_end, message.fit.poses};
+  if (std::string reason = take_observability(message, received); !reason.empty())
+    return {{}, std::move(reason)};
   Diagnosis& diagnosis = received.diagnosis;
   diagnosis.verdict = *verdict;
   diagnosis.reason = message.reason;
@@ -184,10 +214,10 @@ Checked<ReceivedVerdict> to_verdict(const verdict_t& message) {
     goal.missing = std::move(*missing);
     if (message.goal_seconds_left >= 0) goal.seconds_left = message.goal_seconds_left;
     goal.next = message.next;
-    if (goal.reached != goal.missing.empty()) return {{}, "verdict that contradicts itself"};
+    if (goal.reached != goal.missing.empty()) return {{}, self_contradiction};
   }
   if (diagnosis.goal && !diagnosis.goal->reached && *verdict == Verdict::good)
-    return {{}, "verdict that contradicts itself"};
+    return {{}, self_contradiction};
   return {std::move(received), {}};
 }
 

@@ -29,8 +29,8 @@ bool from_ground(const PairState& pair, int direction) {
   return pair.has_problem && pair.problem.mode == 1 && direction >= 2 && direction <= 4;
 }
 
-bool shown_by_motion(const calibration_t& answer, int direction) {
-  return answer.observable[direction] != 0;
+bool shown_by_motion(const Shown& shown, int direction) {
+  return shown.observability.observable[static_cast<std::size_t>(direction)];
 }
 
 std::array<double, 6> components(const Pose& T) {
@@ -38,10 +38,10 @@ std::array<double, 6> components(const Pose& T) {
   return {T.translation.x(), T.translation.y(), T.translation.z(), rpy.x(), rpy.y(), rpy.z()};
 }
 
-std::string spread(const PairState& pair, const calibration_t& answer, int direction, int decimals,
-                   Charset charset) {
+std::string spread(const PairState& pair, int direction, int decimals, Charset charset) {
   if (from_ground(pair, direction)) return "plane";
-  const double value = answer.stddev[direction] * scale_of(direction);
+  const double value =
+      pair.shown.observability.stddev[static_cast<std::size_t>(direction)] * scale_of(direction);
   return symbols(charset).plus_minus + number(value, value < 10 ? decimals : decimals - 1, charset);
 }
 
@@ -58,10 +58,14 @@ double largest(const double* values) {
   return std::max({values[0], values[1], values[2]});
 }
 
-std::string missing_directions(const PairState& pair, const calibration_t& answer) {
+double largest_stddev(const Shown& shown, std::size_t from) {
+  return largest(shown.observability.stddev.data() + from);
+}
+
+std::string missing_directions(const PairState& pair) {
   std::string text;
   for (int i = 0; i < 6; ++i)
-    if (!shown_by_motion(answer, i) && !from_ground(pair, i))
+    if (!shown_by_motion(pair.shown, i) && !from_ground(pair, i))
       text += (text.empty() ? "" : " ") + std::string(direction_names[i]);
   return text;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <string>
@@ -25,20 +26,21 @@ std::string bounded(const std::string& text);
 double scale_of(int direction);
 /// In planar mode the ground planes give what the motions cannot show.
 bool from_ground(const PairState& pair, int direction);
-bool shown_by_motion(const calibration_t& answer, int direction);
+bool shown_by_motion(const Shown& shown, int direction);
 /// x y z [m], roll pitch yaw [rad].
 std::array<double, 6> components(const Pose& T);
 /// Of three standard deviations, for instance.
 double largest(const double* values);
+/// Of x y z [m] (from 0), or of roll pitch yaw [rad] (from 3).
+double largest_stddev(const Shown& shown, std::size_t from);
 
 /// "+-0.94", or "plane" where the ground plane gives it.
-std::string spread(const PairState& pair, const calibration_t& answer, int direction, int decimals,
-                   Charset charset);
+std::string spread(const PairState& pair, int direction, int decimals, Charset charset);
 /// "14.34 cm" or "0.262 deg": as many decimals as the size deserves.
 std::string centimetres(double metres, Charset charset);
 std::string degrees(double radians, Charset charset);
 /// "z yaw": what the motions do not show; empty where they show everything.
-std::string missing_directions(const PairState& pair, const calibration_t& answer);
+std::string missing_directions(const PairState& pair);
 std::string latency(const calibration_t& answer, Charset charset);
 std::string solve_time(const calibration_t& answer, Charset charset);
 std::string verify_time(const calibration_t& answer, Charset charset);

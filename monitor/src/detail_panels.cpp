@@ -41,7 +41,8 @@ void draw_summary(const Pane& pane, const PairState& pair, Charset charset) {
       text +=
           pad_left(number(values[static_cast<std::size_t>(i)] * scale_of(i), row == 0 ? 1 : 2, charset), 8);
     text += " " + std::string(s.plus_minus) +
-            number(largest(answer->stddev + 3 * row) * scale_of(3 * row), row == 0 ? 1 : 2, charset);
+            number(largest_stddev(pair.shown, static_cast<std::size_t>(3 * row)) * scale_of(3 * row),
+                   row == 0 ? 1 : 2, charset);
     text += row == 0 ? " cm" : charset == Charset::unicode ? "°" : " deg";
     pane.text(0, 1 + row, text);
   }
@@ -53,7 +54,8 @@ void draw_summary(const Pane& pane, const PairState& pair, Charset charset) {
               Style::strong);
   } else {
     const Label advice = advice_of(pair);
-    pane.text(0, 3, clean(advice.text.empty() ? answer->hint : advice.text, 200),
+    const std::string& hint = pair.shown.observability.hint;
+    pane.text(0, 3, clean(advice.text.empty() ? hint : advice.text, 200),
               advice.text.empty() ? Style::warning : advice.style);
   }
 }
@@ -73,9 +75,10 @@ void draw_observability(const Pane& pane, const PairState& pair, Charset charset
     const int y = 1 + i;
     pane.text(2, y, direction_names[i], Style::normal);
     const bool ground = from_ground(pair, i);
-    const bool known = shown_by_motion(*answer, i);
+    const bool known = shown_by_motion(pair.shown, i);
     // full bar: a millimetre or a hundredth of a degree; empty bar: a metre or 10 degrees
-    const double doubt = answer->stddev[i] * (i < 3 ? 1.0 : degrees_per_radian / 10.0);
+    const double stddev = pair.shown.observability.stddev[static_cast<std::size_t>(i)];
+    const double doubt = stddev * (i < 3 ? 1.0 : degrees_per_radian / 10.0);
     double filled =
         known && doubt >= 0 ? std::clamp(-std::log10(std::max(doubt, 1e-9)) / 3.0, 0.0, 1.0) : 0.0;
     if (ground) filled = 0;
@@ -86,17 +89,22 @@ void draw_observability(const Pane& pane, const PairState& pair, Charset charset
     const int full = static_cast<int>(std::lround(filled * length));
     for (int k = 0; k < length; ++k)
       pane.text(label_width + k, y, k < full ? s.bar_full : s.bar_empty, k < full ? style : Style::dim);
-    const std::string text = ground   ? "plane"
-                             : !known ? "not shown"
-                                      : s.plus_minus + (i < 3 ? centimetres(answer->stddev[i], charset)
-                                                              : degrees(answer->stddev[i], charset));
+    const std::string text =
+        ground   ? "plane"
+        : !known ? "not shown"
+                 : s.plus_minus + (i < 3 ? centimetres(stddev, charset) : degrees(stddev, charset));
     pane.text(label_width + length + 1, y, pad_left(text, number_width),
               known || ground ? Style::dim : Style::bad);
   }
   const bool all_known = !pair.verdict || pair.verdict->diagnosis.verdict != Verdict::incomplete;
-  const std::string shown = all_known ? "the motions show everything" : "shown, not yet exact enough";
-  pane.text(2, 7, answer->hint.empty() ? shown : clean(answer->hint, 120),
-            answer->hint.empty() ? Style::dim : Style::warning);
+  const std::string& hint = pair.shown.observability.hint;
+  const std::string missing = missing_directions(pair);
+  if (!hint.empty())
+    pane.text(2, 7, clean(hint, 120), Style::warning);
+  else if (!missing.empty())  // no motion would show them
+    pane.text(2, 7, "neither stream measures " + missing, Style::warning);
+  else
+    pane.text(2, 7, all_known ? "the motions show everything" : "shown, not yet exact enough", Style::dim);
 }
 
 void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset charset) {
@@ -150,8 +158,8 @@ void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset char
     else
       value(answer.status == 1 ? "no" : "undecided", answer.status == 1 ? Style::bad : Style::warning);
     value(compact(answer.scaled_gap, charset));
-    value(centimetres(referenced ? own.error_translation : largest(answer.stddev), charset));
-    value(degrees(referenced ? own.error_rotation : largest(answer.stddev + 3), charset));
+    value(centimetres(referenced ? own.error_translation : largest_stddev(own, 0), charset));
+    value(degrees(referenced ? own.error_rotation : largest_stddev(own, 3), charset));
     if (transforms) {
       const std::array<double, 6> values = components(own.T_a_b);
       for (int i = 0; i < 6; ++i) {

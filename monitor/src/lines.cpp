@@ -67,9 +67,9 @@ json answer_json(const PairState& pair, const SolverTrack& solver) {
   j["certified"] = answer.status == 0;
   j["status"] = status_name(answer.status);
   j["observable"] = json::array();
-  for (signed char o : answer.observable) j["observable"].push_back(o != 0);
-  j["stddev"] = reals(answer.stddev, 6);
-  j["hint"] = clean(answer.hint, 200);
+  for (const bool observable : shown.observability.observable) j["observable"].push_back(observable);
+  j["stddev"] = reals(shown.observability.stddev.data(), 6);
+  j["hint"] = clean(shown.observability.hint, 200);
   j["fallback"] = answer.fallback != 0;
   j["solve_us"] = static_cast<double>(answer.solve_ns) * 1e-3;
   j["verify_us"] = static_cast<double>(answer.verify_ns) * 1e-3;
@@ -151,8 +151,9 @@ std::string pair_lines(const Model& model, Charset charset) {
                   number(spread[i] * scale, 2, charset);
         return part;
       };
-      text += "x y z " + triple(T.translation * 100, answer->stddev, 100) + " cm, roll pitch yaw " +
-              triple(rpy, answer->stddev + 3, degrees_per_radian) + degree;
+      const double* const stddev = pair.shown.observability.stddev.data();
+      text += "x y z " + triple(T.translation * 100, stddev, 100) + " cm, roll pitch yaw " +
+              triple(rpy, stddev + 3, degrees_per_radian) + degree;
       if (pair.shown.reference != ReferenceKind::none)
         text += std::string(pair.shown.reference == ReferenceKind::truth ? ", error " : ", off nominal ") +
                 number(pair.shown.error_translation * 100, 2, charset) + " cm " +
@@ -166,7 +167,8 @@ std::string pair_lines(const Model& model, Charset charset) {
     if (answer->latency_us >= 0)
       text += " end to end " + duration(static_cast<double>(answer->latency_us) * 1e-6, charset);
     if (pair.scale) text += ", scale " + scale_text(*pair.scale, charset).text;
-    if (!answer->hint.empty()) text += ", hint: " + clean(answer->hint, 120);
+    if (const std::string& hint = pair.shown.observability.hint; !hint.empty())
+      text += ", hint: " + clean(hint, 120);
     text += "\n";
   }
   return text;

@@ -25,9 +25,9 @@ double norm(const double* stddev) {
 Edges edges_of(const Model& model) {
   Edges edges;
   for (const PairState& pair : model.pairs()) {
-    const calibration_t* answer = pair.answer();
-    if (!answer || !pair.shown.valid) continue;
-    const Edge edge{pair.shown.T_a_b, norm(answer->stddev + 3), norm(answer->stddev)};
+    if (!pair.answer() || !pair.shown.valid) continue;
+    const double* const stddev = pair.shown.observability.stddev.data();
+    const Edge edge{pair.shown.T_a_b, norm(stddev + 3), norm(stddev)};
     edges[{pair.a, pair.b}] = edge;
     edges[{pair.b, pair.a}] = {inverse(edge.T_a_b), edge.rotation, edge.translation};
   }

@@ -3,10 +3,13 @@
 // How the model handles answers of the solvers: which one counts, its certificate, and who solves.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <utility>
 
 #include "answer_text.hpp"
 #include "egocal/bus/answer_check.hpp"
+#include "egocal/diagnosis/as_judged.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/monitor/model.hpp"
@@ -46,8 +49,8 @@ std::array<double, curve_count> curve_values(const Shown& own, const calibration
   values[rotation_error] = own.error_rotation;
   values[translation_error] = own.error_translation;
   if (own.reference == ReferenceKind::none) {
-    values[translation_error] = std::max({message.stddev[0], message.stddev[1], message.stddev[2]});
-    values[rotation_error] = std::max({message.stddev[3], message.stddev[4], message.stddev[5]});
+    values[translation_error] = largest_stddev(own, 0);
+    values[rotation_error] = largest_stddev(own, 3);
   }
   // if the fast process solved globally itself, its own solution is unknown
   const bool own_solution = role != Role::fast || (message.method != "dual" && message.method != "sdp");
@@ -55,6 +58,16 @@ std::array<double, curve_count> curve_values(const Shown& own, const calibration
   values[execution_time] =
       (static_cast<double>(message.solve_ns) + static_cast<double>(message.verify_ns)) * 1e-9;
   return values;
+}
+
+Observability observability_of(const PairState& pair, const calibration_t& answer) {
+  Observability stated;
+  for (std::size_t i = 0; i < 6; ++i) {
+    stated.observable[i] = answer.observable[i] != 0;
+    stated.stddev[i] = answer.stddev[i];
+  }
+  stated.hint = answer.hint;
+  return pair.verdict ? as_judged(std::move(stated), pair.verdict->diagnosis) : stated;
 }
 
 }  // namespace
@@ -71,6 +84,7 @@ std::optional<Pose> pose_from(const double pos[3], const double quat_wxyz[4]) {
 
 Shown shown_of(const PairState& pair, const calibration_t& answer) {
   Shown shown;
+  shown.observability = observability_of(pair, answer);
   shown.error_translation = shown.error_rotation = not_a_number;
   std::optional<Pose> reference;
   if (pair.has_problem && pair.problem.has_truth) {

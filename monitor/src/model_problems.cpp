@@ -21,7 +21,14 @@ double share_of_outliers(const problem_t& problem) {
 }  // namespace
 
 void Model::begin_session(PairState& pair, std::int64_t session) {
-  if (pair.answer()) pair.previous = *pair.answer();
+  if (pair.answer()) {
+    pair.previous = *pair.answer();
+    // as it was shown: the verdict goes with its session
+    for (std::size_t i = 0; i < 6; ++i) {
+      pair.previous->observable[i] = pair.shown.observability.observable[i];
+      pair.previous->stddev[i] = pair.shown.observability.stddev[i];
+    }
+  }
   pair.session = session;
   pair.verdict.reset();
   pair.scale.reset();

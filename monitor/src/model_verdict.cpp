@@ -53,6 +53,7 @@ void Model::on_verdict(const verdict_t& message, const bus::ReceivedVerdict& rec
   reason.erase(reason.find_last_not_of(' ') + 1);  // a sentence that is empty comes behind a blank
   watch_verdict(*pair, verdict, now);
   pair->verdict = verdict;
+  if (const calibration_t* answer = pair->answer()) pair->shown = shown_of(*pair, *answer);
 }
 
 /// What is new in a verdict, as events.

@@ -60,7 +60,7 @@ void draw_proof(const Pane& pane, int y, const PairState& pair, const calibratio
          centimetres(pair.shown.error_translation, charset) + " " +
              degrees(pair.shown.error_rotation, charset),
          Style::strong);
-  const std::string missing = missing_directions(pair, answer);
+  const std::string missing = missing_directions(pair);
   if (!missing.empty()) item("not shown: " + missing, "", Style::warning);
   if (pair.scale)
     item("scale", scale_text(*pair.scale, charset).text, scale_text(*pair.scale, charset).style);
@@ -69,8 +69,7 @@ void draw_proof(const Pane& pane, int y, const PairState& pair, const calibratio
   item("end to end", latency(answer, charset), Style::normal);
 }
 
-void draw_transform(const Pane& pane, int y, const PairState& pair, const calibration_t& answer,
-                    Charset charset) {
+void draw_transform(const Pane& pane, int y, const PairState& pair, Charset charset) {
   const Symbols& s = symbols(charset);
   const std::array<double, 6> values = components(pair.shown.T_a_b);
   for (int row = 0; row < 2; ++row) {
@@ -79,11 +78,10 @@ void draw_transform(const Pane& pane, int y, const PairState& pair, const calibr
     for (int i = 3 * row; i < 3 * row + 3; ++i) {
       pane.text(x, y + row, pad_left(direction_names[i], 5), Style::dim);
       const auto d = static_cast<std::size_t>(i);
-      const bool known = shown_by_motion(answer, i) || from_ground(pair, i);
+      const bool known = shown_by_motion(pair.shown, i) || from_ground(pair, i);
       pane.text(x + 5, y + row, pad_left(number(values[d] * scale_of(i), 2, charset), 8),
                 known ? Style::strong : Style::bad);
-      pane.text(x + 14, y + row, pad_right(spread(pair, answer, i, 2, charset), 6),
-                known ? Style::dim : Style::bad);
+      pane.text(x + 14, y + row, pad_right(spread(pair, i, 2, charset), 6), known ? Style::dim : Style::bad);
       x += 20;
     }
     pane.text(x, y + row, row == 0 ? "cm" : s.degree, Style::dim);
@@ -134,7 +132,7 @@ void draw_pair_card(const Pane& pane, const PairState& pair, Now now, bool selec
   const bool has_reference = pair.shown.reference != ReferenceKind::none;
   const bool wide = pane.width() >= 99;
   draw_proof(pane, y, pair, *answer, has_reference && !wide, charset);
-  draw_transform(pane, y + 1, pair, *answer, charset);
+  draw_transform(pane, y + 1, pair, charset);
   if (has_reference && wide) draw_error(pane, y + 1, pair, charset);
 }
 

@@ -82,7 +82,7 @@ const char* heading_of(PairColumn column, ErrorKind error, Charset charset) {
 }
 
 /// Three components of the transform, from x or from roll on, with the largest of their standard deviations.
-std::string three_components(const PairState& pair, const calibration_t& answer, int from, Charset charset) {
+std::string three_components(const PairState& pair, int from, Charset charset) {
   if (!pair.shown.valid) return "-";
   const int decimals = from == 0 ? 1 : 2;
   const std::array<double, 6> values = components(pair.shown.T_a_b);
@@ -91,7 +91,8 @@ std::string three_components(const PairState& pair, const calibration_t& answer,
     text += pad_left(number(values[static_cast<std::size_t>(i)] * scale_of(i), decimals, charset),
                      i == from ? 6 : 7);
   return text + " " + symbols(charset).plus_minus +
-         number(largest(answer.stddev + from) * scale_of(from), decimals, charset);
+         number(largest_stddev(pair.shown, static_cast<std::size_t>(from)) * scale_of(from), decimals,
+                charset);
 }
 
 /// Of a column that needs an answer.
@@ -102,20 +103,20 @@ Cell cell_of_answer(const PairState& pair, const calibration_t& answer, PairColu
   switch (column) {
     case PairColumn::error_translation:
       return {has_reference ? centimetres(pair.shown.error_translation, charset)
-                            : s.plus_minus + centimetres(largest(answer.stddev), charset),
+                            : s.plus_minus + centimetres(largest_stddev(pair.shown, 0), charset),
               Style::strong};
     case PairColumn::error_rotation:
       return {has_reference ? degrees(pair.shown.error_rotation, charset)
-                            : s.plus_minus + degrees(largest(answer.stddev + 3), charset),
+                            : s.plus_minus + degrees(largest_stddev(pair.shown, 3), charset),
               Style::strong};
     case PairColumn::proof:
       return {answer.status == 0 ? "proven" : answer.status == 1 ? "no" : "?", proof_of(answer).style};
     case PairColumn::solver:
       return {short_solver(answer.solver), solver_style(pair.counted_solver()->role)};
     case PairColumn::translation:
-      return {three_components(pair, answer, 0, charset)};
+      return {three_components(pair, 0, charset)};
     case PairColumn::rotation:
-      return {three_components(pair, answer, 3, charset)};
+      return {three_components(pair, 3, charset)};
     case PairColumn::gap:
       return {compact(answer.scaled_gap, charset), answer.scaled_gap <= 1 ? Style::normal : Style::warning};
     case PairColumn::age:

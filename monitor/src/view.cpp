@@ -295,12 +295,12 @@ std::optional<NamedExtrinsic> extrinsic_of(const PairState& pair) {
     extrinsic.usable = false;
   }
   if (pair.old > 0) extrinsic.usable = false;
-  extrinsic.stddev.emplace();
-  std::copy_n(answer->stddev, 6, extrinsic.stddev->begin());
+  extrinsic.stddev = pair.shown.observability.stddev;
   bus::CheckedAnswer heard;
   for (std::size_t i = 0; i < 6; ++i) heard.answer.observability.observable[i] = answer->observable[i] != 0;
   if (pair.has_problem) heard.problem = bus::to_problem(pair.problem).value;
-  extrinsic.backing = bus::backing_of(heard, answer->method, false);
+  extrinsic.backing =
+      bus::backing_of(heard, answer->method, false, pair.verdict ? &pair.verdict->diagnosis : nullptr);
   if (pair.scale)
     extrinsic.scale = NamedScale{pair.scale->sensor, pair.scale->solution.scale, pair.scale->solution.stddev,
                                  pair.scale->verified && pair.scale->solution.certified};

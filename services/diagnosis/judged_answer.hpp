@@ -11,7 +11,7 @@ namespace egocal::services {
 /// The answer that a verdict is about.
 struct JudgedAnswer {
   Pose T_a_b;
-  Observability observability;
+  Observability observability;  ///< as_judged()
 };
 
 /// How far an answer is from a judged one: the largest difference in an observable direction, in standard

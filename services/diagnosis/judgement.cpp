@@ -8,6 +8,7 @@
 
 #include "diagnosis/remedies.hpp"
 #include "egocal/bus/odometry.hpp"
+#include "egocal/diagnosis/as_judged.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/scale/scale_statistics.hpp"
 #include "egocal/scale/solve_scale.hpp"
@@ -86,20 +87,21 @@ Judgement judge(DiagnosedPair& pair, double scale, const bus::Rig& rig, const Di
   const Answer answer = solve(pair.newest->problem, Method::dual);
   const Answered answered = answered_of(pair, answer);
   const DiagnosisOptions diagnosing = diagnosis_options(pair.config, options);
-  bus::Judged judged{answer.T_a_b, message.utime, message.utime, 0};
+  bus::Judged judged{answer.T_a_b, message.utime, message.utime, 0, {}};
   Diagnosis diagnosis;
   if (poses < options.unseen.least_poses) {
     diagnosis = diagnose(answered, diagnosing);
   } else {
     diagnosis = options.diagnose(a, b, pairing, answered, diagnosing);
-    judged = {answer.T_a_b, a.front().time_us, a.back().time_us, static_cast<std::int64_t>(poses)};
+    judged = {answer.T_a_b, a.front().time_us, a.back().time_us, static_cast<std::int64_t>(poses), {}};
   }
+  judged.observability = as_judged(answer.observability, diagnosis);
   limit_to_what_was_seen(pair.unseen(poses), diagnosis, options.unseen);
   word_remedies(rig, pair.config, diagnosis.findings);
 
   Judgement judgement{verdict_of(pair, diagnosis, judged), {}, moved_for_certain(diagnosis)};
   if (diagnosis.verdict < Verdict::doubtful)
-    judgement.judged = JudgedAnswer{to_pose(answer.T_a_b), answer.observability};
+    judgement.judged = JudgedAnswer{to_pose(answer.T_a_b), judged.observability};
   return judgement;
 }
 

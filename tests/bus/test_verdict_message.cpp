@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
+#include "egocal/bus/decode.hpp"
 #include "egocal/bus/departure.hpp"
 #include "egocal/bus/verdict.hpp"
+#include "egocal/diagnosis/as_judged.hpp"
 
 namespace egocal::bus::test_verdict_message {
 namespace {
@@ -66,6 +69,43 @@ TEST(VerdictMessage, ComesBackAsItWasSent) {
   EXPECT_EQ(diagnosis.goal->next, "Take a ramp.");
 }
 
+/// It only travelled in words, and every listener showed what the statistics alone state.
+TEST(VerdictMessage, SaysWhatIsKnownOfEachDirection) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  Diagnosis diagnosis = example();
+  diagnosis.timing_stddev = {0.3, 0, 0, 0, 0, 0};
+  diagnosis.assumed = {false, false, true, true, true, false};
+  const Observability stated{
+      {true, true, false, true, true, true}, {0.4, 0.1, infinite, 1e-6, 1e-6, 0.01}, "turn"};
+  Judged judged{DualQuaternion{}, begin_us, begin_us + 5, 800, as_judged(stated, diagnosis)};
+  verdict_t sent = message();
+  const verdict_t directions = to_message(diagnosis, judged);
+  for (std::size_t i = 0; i < 6; ++i) {
+    sent.observable[i] = directions.observable[i];
+    sent.stddev[i] = directions.stddev[i];
+    sent.stddev_added[i] = directions.stddev_added[i];
+  }
+  EXPECT_THAT(sent.observable, ElementsAre(1, 1, 0, 0, 0, 1));
+  EXPECT_THAT(sent.stddev, ElementsAre(0.5, 0.1, infinite, infinite, infinite, 0.01));
+  verdict_t decoded{};
+  ASSERT_TRUE(decode(encode(sent), decoded));
+  const Checked<ReceivedVerdict> received = to_verdict(decoded);
+  ASSERT_TRUE(received) << received.reason;
+  EXPECT_EQ(received.value->judged.observability.observable, judged.observability.observable);
+  EXPECT_EQ(received.value->judged.observability.stddev, judged.observability.stddev);
+  EXPECT_EQ(received.value->diagnosis.timing_stddev, diagnosis.timing_stddev);
+  EXPECT_EQ(received.value->diagnosis.assumed, diagnosis.assumed);
+
+  // of a later answer, whose statistics know more
+  const Observability later = as_judged({stated.observable, {0.1, 0.1, infinite, 1e-7, 1e-7, 0.01}, "turn"},
+                                        received.value->diagnosis);
+  EXPECT_DOUBLE_EQ(later.stddev[0], std::hypot(0.1, 0.3));
+  EXPECT_FALSE(later.observable[3]);
+  EXPECT_EQ(later.stddev[3], infinite);
+  EXPECT_EQ(later.stddev[5], 0.01);
+  EXPECT_EQ(later.hint, "");
+}
+
 TEST(VerdictMessage, ANumberThatIsNoneNeverLeaves) {
   Diagnosis diagnosis = example();
   diagnosis.fit.length_ratio = std::numeric_limits<double>::infinity();
@@ -98,6 +138,13 @@ TEST(VerdictMessage, IsRefusedWhereAnyFieldMakesNoSense) {
       {"seq", [](verdict_t& m) { m.seq = -1; }},
       {"quaternion", [](verdict_t& m) { m.quat[0] = 5; }},
       {"position", [](verdict_t& m) { m.pos[1] = std::nan(""); }},
+      {"standard deviation", [](verdict_t& m) { m.stddev[3] = -1; }},
+      {"what is added to one", [](verdict_t& m) { m.stddev_added[0] = std::nan(""); }},
+      {"observable although it is assumed",
+       [](verdict_t& m) {
+         m.observable[2] = 1;
+         m.stddev_added[2] = std::numeric_limits<double>::infinity();
+       }},
       {"fit", [](verdict_t& m) { m.fit.rotation_95 = -1; }},
       {"fit is not finite",
        [](verdict_t& m) { m.fit.length_ratio = std::numeric_limits<double>::infinity(); }},

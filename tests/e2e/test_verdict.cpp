@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The verdict over real LCM: pairing and diagnosis as processes, `egocal listen` beside them.
 #include <csignal>
+#include <nlohmann/json.hpp>
 
 #include "egocal/bus/verdict.hpp"
 #include "processes.hpp"
 #include "support/mistakes.hpp"
+#include "support/planar_drive.hpp"
 
 namespace egocal::test_verdict {
 namespace {
@@ -71,6 +73,47 @@ TEST_F(LiveVerdict, NamesAMistakeAndOutlivesAKill) {
   start("egocal-diagnosis");
   ASSERT_TRUE(judged()) << "it judges again, by what pairing still knows";
   EXPECT_EQ(verdict->fit.poses, 0) << "it has heard no pose itself";
+}
+
+/// Of streams in two dimensions. The reason said so, while the screen and the export had roll and pitch known
+/// to a millionth of a degree.
+TEST_F(LiveVerdict, NobodyShowsAsKnownWhatBothStreamsAssume) {
+  for (const char* program : {"egocal-pairing", "egocal-diagnosis", "egocal-global", "egocal-fast"})
+    start(program);
+  const std::string bus = " --rig " + rig_file + " --lcm-url '" + url + "'", watched = folder / "watched",
+                    exported = folder / "exported";
+  ChildProcess monitor({"/bin/sh", "-c", "exec " + bin + "/egocal-monitor --json" + bus}, watched);
+  const testing::PlanarDrive planar = testing::planar_drive(1, 0.002, 0);
+  std::vector<Trajectory> trajectories{planar.a, planar.b};
+  for (Trajectory& trajectory : trajectories)
+    for (StampedPose& pose : trajectory) pose.time_us += 1'600'000'000'000'000;
+  play(events(trajectories));
+  ASSERT_TRUE(judged());
+  EXPECT_NE(verdict->verdict, "good") << verdict->reason;
+  EXPECT_THAT(verdict->observable, ::testing::ElementsAre(1, 1, 0, 0, 0, 1));
+
+  const auto answer = [&] {
+    nlohmann::json found;
+    std::ifstream in(watched);
+    for (std::string line; std::getline(in, line);)
+      if (line.starts_with("{") && line.ends_with("}")) found = nlohmann::json::parse(line)["pairs"][0];
+    return found;
+  };
+  ASSERT_TRUE(until([&] {
+    const nlohmann::json shown = answer();
+    return shown.is_object() && shown.value("verdict_seq", 0) == verdict->seq;
+  }));
+  EXPECT_EQ(answer()["answer"]["observable"], nlohmann::json({true, true, false, false, false, true}));
+  EXPECT_TRUE(answer()["answer"]["stddev"][3].is_null());
+  EXPECT_LT(answer()["answer"]["stddev"][5], 0.1);
+
+  ChildProcess exporting(
+      {"/bin/sh", "-c", "exec " + bin + "/egocal export --format json" + bus + " --out " + exported},
+      folder / "said");
+  ASSERT_TRUE(until([&] { return exporting.wait(0ms) >= 0; }));
+  std::ifstream in(exported);
+  const nlohmann::json written = nlohmann::json::parse(in);
+  EXPECT_EQ(written["not_observable"], nlohmann::json({"z", "roll", "pitch"})) << written.dump(2);
 }
 
 TEST_F(LiveVerdict, ListenSaysWhatIsHeardAndWhatIsMissed) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "egocal/monitor/lines.hpp"
@@ -109,6 +110,46 @@ TEST_F(VerdictShown, ASentenceThatIsEmptyLeavesNoTrace) {
   judge(diagnosis);
   EXPECT_THAT(shown(Screen::overview, 110, 42), Not(HasSubstr("Cure:")));
   EXPECT_THAT(shown(Screen::detail, 110, 42), Not(HasSubstr("Cure:")));
+}
+
+// The solver's standard deviations were shown beside a verdict that says that nobody measured roll and pitch.
+TEST_F(VerdictShown, WhatIsKnownOfADirectionIsTheVerdictsToSay) {
+  const auto answer = [&] { return nlohmann::json::parse(json_line(model))["pairs"][0]["answer"]; };
+  const double stated = test::calibration_at(problem, false).stddev[0];
+  EXPECT_TRUE(answer()["observable"][3]);
+  EXPECT_EQ(answer()["stddev"][0], stated);
+  Diagnosis diagnosis = clean();
+  diagnosis.verdict = Verdict::incomplete;
+  diagnosis.timing_stddev[0] = 0.02;
+  diagnosis.assumed = {false, false, true, true, true, false};
+  judge(diagnosis);
+  const auto expect_judged = [&](double x) {
+    EXPECT_EQ(answer()["observable"], nlohmann::json({true, true, false, false, false, true}));
+    EXPECT_EQ(answer()["stddev"][0], std::hypot(x, 0.02));
+    for (const int i : {2, 3, 4}) EXPECT_TRUE(answer()["stddev"][i].is_null()) << i;
+    const std::string text = shown(Screen::detail, 110, 42);
+    EXPECT_THAT(text, HasSubstr("not shown"));
+    EXPECT_THAT(text, HasSubstr("neither stream measures z roll pitch"));
+    EXPECT_THAT(shown(Screen::overview, 110, 42), HasSubstr("not shown: z roll pitch"));
+    const std::optional<NamedExtrinsic> exported = extrinsic_of(model.pairs()[0]);
+    ASSERT_TRUE(exported);
+    EXPECT_EQ((*exported->backing)[3], Backing::none);
+    EXPECT_TRUE(std::isinf((*exported->stddev)[3]));
+  };
+  expect_judged(stated);
+
+  // answers come more often than verdicts
+  problem = test::problem_at("lidar", "camera", 200, 10);
+  model.on_problem(problem, some_time);
+  const calibration_t later = test::calibration_at(problem, false);
+  model.on_calibration(later, some_time);
+  expect_judged(later.stddev[0]);
+
+  problem.session += 1;
+  model.on_problem(problem, some_time);
+  const nlohmann::json before = nlohmann::json::parse(json_line(model))["pairs"][0]["previous_session"];
+  EXPECT_TRUE(before["stddev"][3].is_null())
+      << "the verdict of the last session is gone, its answer is shown";
 }
 
 TEST_F(VerdictShown, AFindingComesWithItsCure) {

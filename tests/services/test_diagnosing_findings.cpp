@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The mistakes and moves that egocal-diagnosis names, and their cures.
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "diagnosis/remedies.hpp"
 #include "diagnosis_service.hpp"
+#include "egocal/online/answer.hpp"
+#include "support/planar_drive.hpp"
 
 namespace egocal::services::test_diagnosing_findings {
 namespace {
@@ -41,6 +44,30 @@ TEST_F(DiagnosisService, TheScaleOfTheRigCuresAMissingOne) {
   pass(2s);
   ASSERT_FALSE(verdicts.empty());
   EXPECT_EQ(verdicts.back().verdict, "good") << verdicts.back().reason;
+}
+
+// The reason said so, and every listener showed a standard deviation of 1e-6 degrees.
+TEST_F(DiagnosisService, DirectionsThatBothStreamsAssumeAreNotObservable) {
+  const testing::PlanarDrive planar = testing::planar_drive(1, 0.002, 0);
+  testing::Streams streams;
+  streams.a = planar.a;
+  streams.b = planar.b;
+  for (Trajectory* trajectory : {&streams.a, &streams.b})
+    for (StampedPose& pose : *trajectory) pose.time_us += 1'600'000'000'000'000;
+  diagnose_every_ten_seconds();
+  start();
+  play(streams, 0, 600, 100);
+  ASSERT_FALSE(verdicts.empty()) << status.last_error;
+  const verdict_t& last = verdicts.back();
+  EXPECT_EQ(last.verdict, "incomplete") << last.reason;
+  EXPECT_THAT(last.observable, ::testing::ElementsAre(1, 1, 0, 0, 0, 1));
+  for (const std::size_t i : {2, 3, 4}) {
+    EXPECT_TRUE(std::isinf(last.stddev[i])) << i;
+    EXPECT_TRUE(std::isinf(last.stddev_added[i])) << i;
+  }
+  for (const std::size_t i : {0, 1, 5}) EXPECT_GE(last.stddev[i], last.stddev_added[i]) << i;
+  const Answer answer = solve(*bus::to_problem(sent).value, Method::dual);
+  EXPECT_TRUE(answer.observability.observable[3]) << "as the statistics have it";
 }
 
 // With the cure in force the finding stayed, and from a drift of 1 ms/s on a right answer was contradictory:

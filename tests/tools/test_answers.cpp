@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -188,6 +189,30 @@ TEST_F(AnswersTest, OfALogIsTheSessionThatRanAtItsEnd) {
   EXPECT_EQ(best->message.seq, 9);
   EXPECT_EQ(best->message.pairs, 109);
   EXPECT_TRUE(best->certified());
+}
+
+TEST_F(AnswersTest, WhatIsKnownOfADirectionIsTheVerdictsToSay) {
+  const problem_t to = problem(10);
+  Answers answers;
+  answers.hear(to);
+  answers.hear(answer(to));
+  const Observability stated = answers.observability(pair_name);
+  ASSERT_TRUE(stated.observable[3]);
+  EXPECT_EQ(stated.stddev, answers.best(pair_name)->checked.answer.observability.stddev);
+  verdict_t judged = verdict(Verdict::incomplete, begin_us, 9);
+  judged.stddev_added[0] = 0.2;
+  judged.stddev_added[3] = std::numeric_limits<double>::infinity();
+  answers.hear(judged);
+  const Observability shown = answers.observability(pair_name);
+  EXPECT_DOUBLE_EQ(shown.stddev[0], std::hypot(stated.stddev[0], 0.2));
+  EXPECT_FALSE(shown.observable[3]);
+  EXPECT_TRUE(std::isinf(shown.stddev[3]));
+  EXPECT_EQ(shown.stddev[5], stated.stddev[5]);
+
+  const problem_t next = problem(1, begin_us + 1'000'000);
+  answers.hear(next);
+  answers.hear(answer(next));
+  EXPECT_TRUE(answers.observability(pair_name).observable[3]) << "of another session";
 }
 
 // A mount may have moved since then.

@@ -8,6 +8,7 @@
 
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/log_file.hpp"
+#include "egocal/diagnosis/as_judged.hpp"
 #include "egocal/microseconds.hpp"
 
 namespace egocal::tools {
@@ -156,6 +157,12 @@ const Answers::Judgement* Answers::judgement(const PairName& pair) const {
 const Diagnosis* Answers::diagnosis(const PairName& pair) const {
   const Judgement* const known = judgement(pair);
   return known ? &known->diagnosis : nullptr;
+}
+
+Observability Answers::observability(const PairName& pair) const {
+  const Observability& stated = best(pair)->checked.answer.observability;
+  const Judgement* const known = judgement(pair);
+  return known ? as_judged(stated, known->diagnosis) : stated;
 }
 
 std::optional<bus::Departure> Answers::departure(const PairName& pair) const {

@@ -15,6 +15,7 @@
 #include "egocal/bus/rig.hpp"
 #include "egocal/bus/scale.hpp"
 #include "egocal/bus/verdict.hpp"
+#include "egocal/uncertainty/directions.hpp"
 
 namespace egocal::tools {
 
@@ -49,6 +50,9 @@ class Answers {
   const Best* best(const PairName& pair) const;
   /// The newest verdict about the session of the answer that counts; null: none.
   const Diagnosis* diagnosis(const PairName& pair) const;
+  /// What the answer that counts knows of each direction, by the newest verdict about its session where there
+  /// is one. There must be an answer.
+  Observability observability(const PairName& pair) const;
   /// How far the answer that counts is from the one that this verdict calls good; empty: it holds for it.
   std::optional<bus::Departure> departure(const PairName& pair) const;
   /// That verdict is about the newest problem that was heard, by poses up to its end.

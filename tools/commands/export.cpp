@@ -155,10 +155,11 @@ NamedExtrinsic named(const PairName& pair, const Found& found, bool live) {
                            to_pose(answer.T_a_b),
                            answers.certified(pair),
                            best.message.pairs,
-                           answer.observability.stddev};
+                           answers.observability(pair).stddev};
   extrinsic.usable = is_current(pair, answers, live);
   judge(pair, answers, extrinsic);
-  extrinsic.backing = bus::backing_of(best.checked, best.message.method, found.with_nominal.contains(pair));
+  extrinsic.backing = bus::backing_of(best.checked, best.message.method, found.with_nominal.contains(pair),
+                                      answers.diagnosis(pair));
   if (const std::string not_shown = not_shown_in_words(extrinsic); !not_shown.empty())
     say(fmt::format("egocal: {}: {}", text(pair), not_shown));
   if (scale)

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "calibration/steps.hpp"
 
-#include <cmath>
-#include <limits>
 #include <utility>
 
+#include "egocal/diagnosis/as_judged.hpp"
 #include "egocal/scale/solve_scale.hpp"
 
 namespace egocal::detail {
@@ -39,16 +38,7 @@ Answered answered(const Calibration& calibration, Problem single, const std::opt
 
 Calibration judged(Calibration calibration, Diagnosis diagnosis) {
   calibration.verdict = diagnosis.verdict;
-  for (std::size_t i = 0; i < diagnosis.timing_stddev.size(); ++i)
-    if (diagnosis.timing_stddev[i] > 0)  // else not a bit is changed
-      calibration.observability.stddev[i] =
-          std::hypot(calibration.observability.stddev[i], diagnosis.timing_stddev[i]);
-  for (std::size_t i = 0; i < diagnosis.assumed.size(); ++i)
-    if (diagnosis.assumed[i]) {
-      calibration.observability.observable[i] = false;
-      calibration.observability.stddev[i] = std::numeric_limits<double>::infinity();
-      calibration.observability.hint.clear();  // no motion would help
-    }
+  calibration.observability = as_judged(std::move(calibration.observability), diagnosis);
   calibration.reason = std::move(diagnosis.reason);
   calibration.fit = std::move(diagnosis.fit);
   calibration.findings = std::move(diagnosis.findings);

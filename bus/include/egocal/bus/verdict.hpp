@@ -8,6 +8,7 @@
 
 #include "egocal/bus/convert.hpp"
 #include "egocal/diagnosis/verdict.hpp"
+#include "egocal/uncertainty/directions.hpp"
 #include "egocal/verdict_t.hpp"
 
 namespace egocal::bus {
@@ -20,6 +21,7 @@ struct Judged {
   DualQuaternion T_a_b;
   std::int64_t begin_us = 0, end_us = 0;  ///< first and last pose; findings count their time from the first
   std::int64_t poses = 0;                 ///< of the slower stream, that the fit is about; 0: not measured
+  Observability observability{};          ///< of the answer, as_judged()
 };
 
 /// Names, session, numbers and sender are the caller's to fill in. The tenths of the fit do not travel.

@@ -25,6 +25,7 @@
 #include "egocal/monitor/history.hpp"
 #include "egocal/problem_t.hpp"
 #include "egocal/status_t.hpp"
+#include "egocal/uncertainty/directions.hpp"
 
 namespace egocal::monitor {
 
@@ -92,10 +93,12 @@ struct SolverTrack {
 
 enum class ReferenceKind { none, truth, nominal };
 
-/// The answer that counts, made plain.
+/// An answer, made plain.
 struct Shown {
   bool valid = false;  ///< all values of the transform are finite and the quaternion is one
   Pose T_a_b;
+  Observability
+      observability;  ///< as the newest verdict of the session judges it, or as the solver states it
   ReferenceKind reference = ReferenceKind::none;
   double error_translation = 0;  ///< against the reference (32) [m]; NaN without one
   double error_rotation = 0;     ///< [rad]
