@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -70,6 +72,15 @@ TEST_F(OutcomeTest, OfAWholeLogIsTheVerdict) {
   EXPECT_FALSE(outcome().unusable);
   EXPECT_THAT(outcome().text, StartsWith("left -> right: good: "));
   EXPECT_THAT(outcome().text, Not(HasSubstr("log")));
+}
+
+// Its numbers were printed without a word.
+TEST_F(OutcomeTest, WhatTheMotionsDoNotShowIsNamed) {
+  EXPECT_THAT(outcome().text, Not(HasSubstr("OBSERVABLE")));
+  verdict_t judged = verdict(Verdict::incomplete, begin_us, 100);
+  for (const std::size_t i : {2, 3, 4}) judged.stddev_added[i] = std::numeric_limits<double>::infinity();
+  answers.hear(judged);
+  EXPECT_THAT(outcome().text, HasSubstr("\n  NOT OBSERVABLE, not a measurement: z roll pitch"));
 }
 
 TEST_F(OutcomeTest, WhatIsMissedIsAnOption) {

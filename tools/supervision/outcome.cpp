@@ -8,8 +8,10 @@
 #include <cmath>
 #include <vector>
 
+#include "egocal/bus/backing.hpp"
 #include "egocal/bus/convert.hpp"
 #include "egocal/in_words.hpp"
+#include "egocal/io/extrinsic_text.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/scale/scale_drive.hpp"
 #include "offline/reading/log_damage.hpp"
@@ -212,6 +214,19 @@ std::string line_of(const PairName& pair, const Answers& answers, const std::str
   return text;
 }
 
+/// "NOT OBSERVABLE, not a measurement: z": numbers of the answer that the motions do not show.
+std::string not_shown_of(const bus::PairConfig& config, const Answers& answers) {
+  const PairName pair{config.a, config.b};
+  const Answers::Best& best = *answers.best(pair);
+  NamedExtrinsic extrinsic;
+  extrinsic.parent = config.a;
+  extrinsic.child = config.b;
+  extrinsic.backing =
+      bus::backing_of(best.checked, best.message.method, config.nominal.has_value(), answers.diagnosis(pair));
+  const std::string words = not_shown_in_words(extrinsic);
+  return words.empty() ? "" : "  " + words + "\n";
+}
+
 /// What the motions cannot rule out, once for all pairs of which it holds.
 std::string possible_of_all(const bus::Rig& rig, const Answers& answers) {
   std::map<std::string, std::vector<std::string>> pairs_of;
@@ -249,7 +264,8 @@ Outcome outcome_of(const bus::Rig& rig, const Answers& answers, const LogExtent&
     outcome.text += line_of(pair, answers, missing,
                             after_clock > 0 ? Begin{} : not_in_session(pair, extent, session, options),
                             hole_in(rig, config, extent, answers, options),
-                            missing.empty() ? without_motion(pair, extent, answers, options) : 0);
+                            missing.empty() ? without_motion(pair, extent, answers, options) : 0) +
+                    not_shown_of(config, answers);
   }
   outcome.text += possible_of_all(rig, answers);
   outcome.text += silences_in_words(extent, options);
