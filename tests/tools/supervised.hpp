@@ -131,9 +131,9 @@ class Supervision : public ::testing::Test {
     std::fflush(stderr);
     _exit(code);
   }
-  int ended() {
+  int ended(std::chrono::milliseconds within = 30s) {
     int state = 0;
-    if (!until([&] { return waitpid(pid, &state, WNOHANG) == pid; })) return -1;
+    if (!until([&] { return waitpid(pid, &state, WNOHANG) == pid; }, within)) return -1;
     pid = -1;
     return WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
   }

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <optional>
+#include <vector>
 
 #include "supervision/last_answers.hpp"
 #include "supervision/last_motions.hpp"
@@ -64,62 +66,110 @@ TEST(SilenceOfAProcess, CountsFromWhenAnotherOneIsHeard) {
   EXPECT_EQ(silence.look(1h + options.silent, 1s, true, options), Next::report_and_continue);
 }
 
+constexpr Work idle{};
+
+/// Of processes that get this part of a core, at this time.
+Work computing(double share, Time now) {
+  return {.computes = true,
+          .processor = std::chrono::duration_cast<std::chrono::nanoseconds>(share * now.time_since_epoch())};
+}
+
 TEST(LastAnswersOfALog, AreWaitedForWhileTheyCome) {
-  LastAnswers answers({.stall = 5s, .longest_stall = 60s});
+  LastAnswers answers({});
   Time now{};
   EXPECT_FALSE(answers.begun());
-  for (int missing = 20; missing > 0; --missing, now += 4s) {
-    EXPECT_TRUE(answers.wait_on(missing, false, now)) << missing;
-    EXPECT_TRUE(answers.begun());
-  }
-  EXPECT_FALSE(answers.wait_on(0, true, now));
+  for (int missing = 20; missing > 0; --missing)
+    for (const Time end = now + 4s; now < end; now += 100ms) {
+      EXPECT_TRUE(answers.wait_on(missing, idle, now)) << missing;
+      EXPECT_TRUE(answers.begun());
+    }
+  EXPECT_FALSE(answers.wait_on(0, computing(1, now), now));
 }
 
 TEST(LastAnswersOfALog, AreGivenUpWhereNothingHappens) {
-  LastAnswers answers({.stall = 5s, .longest_stall = 60s});
+  LastAnswers answers({});
   Time now{};
-  for (; now < Time{5s}; now += 100ms) ASSERT_TRUE(answers.wait_on(1, false, now));
-  EXPECT_FALSE(answers.wait_on(1, false, now));
+  for (; now < Time{5s}; now += 100ms) ASSERT_TRUE(answers.wait_on(1, idle, now));
+  EXPECT_FALSE(answers.wait_on(1, idle, now));
 }
 
-// A diagnosis that waits for a core, and one that never ends.
-TEST(LastAnswersOfALog, AreWaitedForWhileAProcessHasWorkButNotForEver) {
-  LastAnswers answers({.stall = 5s, .longest_stall = 60s});
+/// One that never ends is given up; a thirtieth of a core is not an end. After 60 s it was one.
+TEST(LastAnswersOfALog, AreWaitedForByWhatTheProcessesHaveOfACore) {
+  for (const int part : {1, 30}) {
+    LastAnswers answers({.longest_stall = 60s});
+    Time now{};
+    for (; now < Time{part * 59s}; now += 100ms)
+      ASSERT_TRUE(answers.wait_on(1, computing(1.0 / part, now), now)) << now.time_since_epoch().count();
+    now = Time{part * 61s};
+    EXPECT_FALSE(answers.wait_on(1, computing(1.0 / part, now), now)) << part;
+  }
+}
+
+/// It waits for a disk that is gone, or somebody stops it again and again.
+TEST(LastAnswersOfALog, AreNotWaitedForForEverWhereAProcessIsHeld) {
+  LastAnswers answers({.longest_stall = 60s});
   Time now{};
-  for (; now < Time{60s}; now += 100ms) ASSERT_TRUE(answers.wait_on(1, true, now));
-  EXPECT_FALSE(answers.wait_on(1, true, now));
+  for (; now < Time{60s}; now += 100ms) ASSERT_TRUE(answers.wait_on(1, {.held = true}, now));
+  EXPECT_FALSE(answers.wait_on(1, {.held = true}, now));
+}
+
+/// Whoever asks has no core either.
+TEST(LastAnswersOfALog, AQuestionThatComesLateCountsForLittle) {
+  LastAnswers answers({});
+  Time now{};
+  for (int i = 0; i < 10; ++i, now += 2s) ASSERT_TRUE(answers.wait_on(1, idle, now)) << i;
 }
 
 // Every second moment counts as idle.
 TEST(LastAnswersOfALog, IdleTimeAddsUpBetweenWork) {
-  LastAnswers answers({.stall = 5s, .longest_stall = 60s});
+  LastAnswers answers({});
   Time now{};
-  bool has_work = false;
-  for (; now < Time{9900ms}; now += 100ms, has_work = !has_work)
-    ASSERT_TRUE(answers.wait_on(2, has_work, now)) << now.time_since_epoch().count();
-  for (; now < Time{10'200ms}; now += 100ms, has_work = !has_work) answers.wait_on(2, has_work, now);
-  EXPECT_FALSE(answers.wait_on(2, false, now));
-  EXPECT_TRUE(answers.wait_on(1, false, now)) << "another one has come";
+  bool works = false;
+  const auto wait_on = [&](int missing) {
+    Work work = computing(0.5, now);
+    work.computes = works;
+    return answers.wait_on(missing, work, now);
+  };
+  for (; now < Time{9900ms}; now += 100ms, works = !works)
+    ASSERT_TRUE(wait_on(2)) << now.time_since_epoch().count();
+  for (; now < Time{10'200ms}; now += 100ms, works = !works) wait_on(2);
+  works = false;
+  EXPECT_FALSE(wait_on(2));
+  EXPECT_TRUE(wait_on(1)) << "another one has come";
 }
 
 // It was the end: fewer had been missing before pairing found the last motions.
 TEST(LastAnswersOfALog, MoreMotionsAreNewsAsWell) {
-  LastAnswers answers({.stall = 5s, .longest_stall = 60s});
+  LastAnswers answers({});
   Time now{};
-  for (; now < Time{4s}; now += 100ms) ASSERT_TRUE(answers.wait_on(1, false, now));
+  for (; now < Time{4s}; now += 100ms) ASSERT_TRUE(answers.wait_on(1, idle, now));
   for (; now < Time{8s}; now += 100ms)
-    ASSERT_TRUE(answers.wait_on(15, false, now)) << now.time_since_epoch().count();
+    ASSERT_TRUE(answers.wait_on(15, idle, now)) << now.time_since_epoch().count();
 }
 
 TEST(LastAnswersOfALog, TwoSendersThatContradictEachOtherAreNotWaitedForForEver) {
-  LastAnswers answers({.stall = 5s, .longest_stall = 60s});
+  LastAnswers answers({});
   Time now{};
   int missing = 1;
-  while (answers.wait_on(missing, true, now) && now < Time{1h}) {
+  while (answers.wait_on(missing, computing(1, now), now) && now < Time{1h}) {
     now += 100ms;
     missing = 3 - missing;
   }
   EXPECT_LT(now, Time{1h});
+}
+
+/// Nothing was said for a minute, in which it seemed to hang.
+TEST(LastAnswersOfALog, ThatAreWaitedForAreReportedMoreAndMoreSeldom) {
+  LastAnswers answers({.report = 10s});
+  std::vector<int> reported;
+  for (Time now{}; now < Time{300s}; now += 100ms) {
+    ASSERT_TRUE(answers.wait_on(1, computing(0.1, now), now));
+    if (const std::optional<Waited> waited = answers.to_report()) {
+      reported.push_back(static_cast<int>(waited->time / 1s));
+      EXPECT_EQ(waited->processor, waited->time / 10);
+    }
+  }
+  EXPECT_EQ(reported, (std::vector{10, 20, 40, 80, 160}));
 }
 
 problem_t problem_of(std::int64_t session, std::int64_t seq) {

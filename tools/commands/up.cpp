@@ -218,7 +218,10 @@ void run(const UpOptions& options, Interruptions& interruptions) {
   supervisor.may_be_silent = [&watch](pid_t pid) { return watch.announced_silence(pid); };
   supervisor.lines = watch.lines();
   supervisor.lines_again = [&watch] { return watch.listen_again(); };
-  if (!options.log.empty()) supervisor.awaited = [&watch] { return watch.awaited(); };
+  if (!options.log.empty()) {
+    supervisor.awaited = [&watch] { return watch.awaited(); };
+    supervisor.counts_awaited = [&watch] { return watch.pid(); };
+  }
   bool monitor_ended = false;
   supervisor.foreground_ended = [&monitor_ended] { monitor_ended = true; };
   const int code = supervise(

@@ -63,6 +63,8 @@ class BusWatch {
   /// problem again after it has acknowledged its last message. All pairs, until the listening process has
   /// counted since the first question; one that does not count is continued (SIGCONT).
   int awaited() const;
+  /// The listening process; -1: none runs.
+  pid_t pid() const { return pid_; }
   /// Readable, without blocking: lines of text, see BusNews.
   int lines() const { return lines_.get(); }
   /// Starts another listening process where the first one was killed, and returns the new lines(): problems

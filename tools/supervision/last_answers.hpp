@@ -5,34 +5,62 @@
 
 #include <chrono>
 #include <optional>
+#include <string>
 
 namespace egocal::tools {
 
+/// What the processes that answer do at this moment, all of them together.
+struct Work {
+  bool computes = false;                  ///< one has a core, or waits for one
+  bool held = false;                      ///< one has work, and is stopped or waits for its disk
+  std::chrono::nanoseconds processor{0};  ///< that they have had since they were started
+};
+
 /// A core that others take is not an end, and a process that turns in circles is none that answers.
 struct LastAnswersOptions {
-  /// In which no process has work and no further answer comes: a diagnosis takes seconds on a small computer.
+  /// In which no process has work and no further answer comes: messages and timers between processes take a
+  /// second.
   std::chrono::milliseconds stall{5000};
-  /// Without a further answer, even where a process has work. New motions come no later than this after the
-  /// log's end.
+  /// Without a further answer: of processor time while a process computes, of any while one is held. A
+  /// diagnosis takes a second of a core, which is a minute where children get a sixtieth of it.
   std::chrono::milliseconds longest_stall{60'000};
+  /// No more than this counts between two questions, which are a tenth of a second apart: whoever asks more
+  /// seldom has no core either, and neither have those that are to answer.
+  std::chrono::milliseconds longest_step{300};
+  /// Until it is said for the first time what is waited for; the next time doubles each time.
+  std::chrono::milliseconds report{10'000};
 };
+
+/// What is said while they are waited for.
+struct Waited {
+  std::chrono::milliseconds time{0};       ///< since the first question
+  std::chrono::milliseconds processor{0};  ///< that the processes have had in it
+};
+
+/// Why it takes so long: processes that hardly get a core are slow, not stuck. missing: answers.
+std::string in_words(int missing, const Waited& waited);
 
 class LastAnswers {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  explicit LastAnswers(const LastAnswersOptions& options) : options_(options) {}
+  explicit LastAnswers(const LastAnswersOptions& options)
+      : options_(options), report_after_(options.report) {}
 
   bool begun() const { return missing_.has_value(); }
   /// Whether to wait on. missing: answers; more than before are news as well, as new motions were found.
-  /// has_work: any process.
-  bool wait_on(int missing, bool has_work, Time now);
+  bool wait_on(int missing, const Work& work, Time now);
+  /// Since the last question, where it is time to say so.
+  std::optional<Waited> to_report();
 
  private:
   LastAnswersOptions options_;
   std::optional<int> missing_;
-  Time begun_at_{}, news_at_{}, asked_at_{};
-  Time::duration idle_{};  ///< since the last news
+  Time begun_at_{}, asked_at_{};
+  std::chrono::nanoseconds processor_{0};         ///< at the last question
+  std::chrono::nanoseconds waited_processor_{0};  ///< since the first one
+  Time::duration idle_{}, busy_{};                ///< since the last news
+  Time::duration report_after_;
 };
 
 }  // namespace egocal::tools

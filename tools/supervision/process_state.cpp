@@ -3,13 +3,16 @@
 #include "supervision/process_state.hpp"
 
 #include <sys/wait.h>
+#include <time.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <fstream>
 #include <string>
-#include <string_view>
 #include <thread>
+#include <utility>
 
 namespace egocal::tools {
 
@@ -28,24 +31,50 @@ void wait_until_stopped(pid_t pid) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
 }
 
-/// One of these states, by their letters in /proc.
-bool is_in(pid_t pid, std::string_view states) {
-  std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
-  std::string text;
-  std::getline(stat, text);
-  const std::size_t name_end = text.rfind(") ");
-  return name_end != std::string::npos && name_end + 2 < text.size() &&
-         states.find(text[name_end + 2]) != std::string_view::npos;
+/// That it has had since it was started; 0: it has ended.
+std::chrono::nanoseconds processor_time(pid_t pid) {
+  clockid_t clock{};
+  timespec time{};
+  if (clock_getcpuclockid(pid, &clock) != 0 || clock_gettime(clock, &time) != 0) return {};
+  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
 }
 
 }  // namespace
 
-bool has_work(pid_t pid) {
-  return is_in(pid, "RDTt");
+Activity activity(pid_t pid) {
+  std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+  std::string text;
+  std::getline(stat, text);
+  const std::size_t name_end = text.rfind(") ");
+  if (name_end == std::string::npos || name_end + 2 >= text.size()) return Activity::waits;
+  switch (text[name_end + 2]) {
+    case 'R':
+      return Activity::computes;
+    case 'D':
+      return Activity::disk;
+    case 'T':
+    case 't':
+      return Activity::stopped;
+    default:
+      return Activity::waits;
+  }
 }
 
-bool computes(pid_t pid) {
-  return is_in(pid, "RD");
+void add_work_of(pid_t pid, Work& work) {
+  if (pid <= 0) return;
+  const Activity doing = activity(pid);
+  work.computes = work.computes || doing == Activity::computes;
+  work.held = work.held || doing == Activity::disk || doing == Activity::stopped;
+  work.processor += processor_time(pid);
+}
+
+std::chrono::milliseconds without_waiting_for_a_core(pid_t pid, std::chrono::milliseconds passed,
+                                                     std::chrono::nanoseconds& processor) {
+  if (pid <= 0) return passed;
+  const auto before = std::exchange(processor, processor_time(pid));
+  if (activity(pid) != Activity::computes) return passed;
+  const auto used = std::chrono::duration_cast<std::chrono::milliseconds>(processor - before);
+  return std::clamp(used, std::chrono::milliseconds(0), passed);
 }
 
 void stop_until_continued(std::span<const pid_t> foreground, bool by_key) {

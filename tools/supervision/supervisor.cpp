@@ -45,6 +45,7 @@ struct Child {
   std::string reported{};    ///< how it ended when that was reported last,
   Clock::time_point reported_at{};
   Silence silence{};
+  std::chrono::nanoseconds processor{0};  ///< that it had had when its silence was looked at last
 };
 
 std::string ending(int status) {
@@ -118,9 +119,10 @@ class Supervisor {
       const milliseconds announced =
           options_.may_be_silent && child.pid > 0 ? options_.may_be_silent(child.pid) : milliseconds(0);
       const std::optional<milliseconds> since = heard_ago(child);
+      const milliseconds counted = without_waiting_for_a_core(child.pid, passed, child.processor);
       if (child.program.foreground || !since || computes_as_announced(child, *since, announced)) continue;
       const std::string& name = child.program.name;
-      switch (child.silence.look(*since, passed, any_heard, options_.silence)) {
+      switch (child.silence.look(*since, counted, any_heard, options_.silence)) {
         case Silence::Next::nothing:
           break;
         case Silence::Next::report_heard:
@@ -143,13 +145,17 @@ class Supervisor {
 
   /// One that is stopped meanwhile, or waits for something, hangs as others do.
   bool computes_as_announced(const Child& child, milliseconds silent, milliseconds announced) const {
-    return silent >= options_.silence.silent && silent <= announced && computes(child.pid);
+    if (silent < options_.silence.silent || silent > announced) return false;
+    const Activity doing = activity(child.pid);
+    return doing == Activity::computes || doing == Activity::disk;
   }
 
-  bool any_has_work() const {
-    return std::any_of(children_.begin(), children_.end(), [](const Child& child) {
-      return child.pid > 0 && !child.program.foreground && has_work(child.pid);
-    });
+  Work work() const {
+    Work work;
+    for (const Child& child : children_)
+      if (!child.program.foreground) add_work_of(child.pid, work);
+    if (options_.counts_awaited) add_work_of(options_.counts_awaited(), work);
+    return work;
   }
 
   /// After a log's end.
@@ -159,7 +165,9 @@ class Supervisor {
       reports_.report(
           fmt::format("the log has ended; pairs whose answer or verdict is still awaited: {}", awaited));
     end_at_ = now + look_again;
-    const bool waits = last_answers_.wait_on(awaited, any_has_work(), now);
+    const bool waits = last_answers_.wait_on(awaited, work(), now);
+    if (const std::optional<Waited> waited = waits ? last_answers_.to_report() : std::nullopt)
+      reports_.report(in_words(awaited, *waited));
     if (!waits && awaited > 0)
       reports_.report(
           fmt::format("no more answers come; pairs without a last answer or verdict: {}", awaited));

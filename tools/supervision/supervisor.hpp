@@ -26,6 +26,8 @@ struct SupervisorOptions {
   /// How many answers are still missing. Asked at the player's end for the first time, and again from
   /// `settle` on.
   std::function<int()> awaited{};
+  /// The process that counts them, whose work counts as that of the programs; -1: none runs.
+  std::function<pid_t()> counts_awaited{};
   LastAnswersOptions last_answers;
   /// How long ago a process was heard on the bus; nothing: never. Foreground programs are left alone, and so
   /// is a process that was never heard.
