@@ -299,6 +299,10 @@ TEST_F(Up, TheirProcessesCanBeTold) {
     EXPECT_THAT(read(path("told")), HasSubstr(ignored[1] == "seek" ? "egocal-player" : "egocal-pairing"));
   }
   EXPECT_EQ(tell({"egocal-diagnosis", "resume"}), 0);
+  // for longer than others are silent, as one that computes: here until it is continued after five seconds
+  send_signal(child(egocal.pid(), "egocal-diagnosi"), SIGSTOP);
+  EXPECT_EQ(tell({"egocal-diagnosis", "resume"}), 0) << read(path("told"));
+  EXPECT_THAT(read(path("told")), HasSubstr("egocal-diagnosis is not heard: waiting"));
   EXPECT_EQ(tell({"egocal-player", "seek", "3.5"}), 0);
   const std::int64_t before = out;
   EXPECT_EQ(tell({"egocal-player", "step"}), 0);

@@ -1,9 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "arguments.hpp"
 #include "commands/commands.hpp"
@@ -13,6 +16,7 @@
 #include "egocal/bus/process.hpp"
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
+#include "warnings.hpp"
 
 namespace egocal::tools {
 
@@ -48,30 +52,70 @@ std::string refusal(const TellOptions& options, const std::string& role) {
          (verbs.empty() ? "no command" : verbs);
 }
 
-void run_tell(const TellOptions& options) {
+/// What is heard of the one that is addressed, and of a diagnosis that may be it.
+struct Heard {
+  bool obeys = false;
+  std::optional<std::string> ignores{};  ///< the role of one that does not know the verb
+  bool pairing = false, diagnosis = false;
+};
+
+void hear(const status_t& status, const TellOptions& options, Heard& heard) {
+  if (status.state == "ended") return;
+  const std::optional<bus::Role> role = bus::role_from_name(status.role);
+  heard.pairing = heard.pairing || role == bus::Role::pairing;
+  heard.diagnosis = heard.diagnosis || role == bus::Role::diagnosis;
+  if (options.to != "*" && status.name != options.to) return;
+  // what a role of another version knows is not known here
+  if (!role || bus::knows_verb(*role, options.verb))
+    heard.obeys = true;
+  else
+    heard.ignores = status.role;
+}
+
+/// It may be a diagnosis that computes, which is silent for as long as it has announced before we listened:
+/// problems are made that one would judge, none was heard, and the name is not that of another program.
+bool may_compute(const TellOptions& options, const Heard& heard) {
+  if (options.to == "*" || !heard.pairing || heard.diagnosis) return false;
+  for (const bus::Role other :
+       {bus::Role::player, bus::Role::pairing, bus::Role::fast, bus::Role::global, bus::Role::monitor})
+    if (options.to == "egocal-" + std::string(bus::role_name(other))) return false;
+  return bus::knows_verb(bus::Role::diagnosis, options.verb);
+}
+
+/// Until that is known. LCM does not report whether a message was received; every process sends a status once
+/// a second, but for one that computes.
+void listen_for(const TellOptions& options, bus::Loop& loop, Heard& heard) {
   using namespace std::chrono_literals;
+  loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
+    hear(status, options, heard);
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  bool said = false;
+  while (!heard.obeys && !(heard.ignores && options.to != "*")) {
+    const auto passed = std::chrono::steady_clock::now() - begin;
+    if (passed > 3s) {
+      if (!may_compute(options, heard) || passed > bus::longest_announced_silence) break;
+      if (!std::exchange(said, true))
+        say(
+            fmt::format("egocal: {} is not heard: waiting, as a diagnosis that computes is silent for up to "
+                        "{} s",
+                        options.to, bus::longest_announced_silence.count()));
+    }
+    if (!loop.run_once(50ms)) throw cli::Exit{1};
+  }
+}
+
+void run_tell(const TellOptions& options) {
   const std::string verb = words(options);
   if (options.to != "*" && !bus::plausible_name(options.to))
     throw UsageError("tell: expected the name of a process, or '*'");
   const bus::Rig rig = options.rig.empty() ? bus::Rig{} : bus::read_rig(options.rig);
+  Heard heard;  // as long as the loop, which fills it
   bus::Loop loop(options.url.empty() ? rig.lcm_url : options.url);
-  // LCM does not report whether a message was received; every process sends a status once a second
-  bool obeys = false;
-  std::optional<std::string> heard;  // the role of one that ignores the verb
-  loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {
-    if ((options.to != "*" && status.name != options.to) || status.state == "ended") return;
-    const std::optional<bus::Role> role = bus::role_from_name(status.role);
-    // what a role of another version knows is not known here
-    if (!role || bus::knows_verb(*role, options.verb))
-      obeys = true;
-    else
-      heard = status.role;
-  });
-  const auto end = std::chrono::steady_clock::now() + 3s;
-  while (!obeys && !(heard && options.to != "*") && std::chrono::steady_clock::now() < end)
-    if (!loop.run_once(50ms)) return;
-  if (!obeys && heard) throw Error("tell: " + refusal(options, *heard));
-  if (!obeys) throw Error("tell: no process " + (options.to == "*" ? "" : options.to + " ") + "is alive");
+  listen_for(options, loop, heard);
+  if (!heard.obeys && heard.ignores) throw Error("tell: " + refusal(options, *heard.ignores));
+  if (!heard.obeys)
+    throw Error("tell: no process " + (options.to == "*" ? "" : options.to + " ") + "is alive");
   command_t command{};
   command.utime = bus::wall_us();
   command.to = options.to;
