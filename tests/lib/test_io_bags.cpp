@@ -226,6 +226,15 @@ TEST(Bags, MessagesWithoutAStampTakeTheTimeOfRecording) {
   TrajectoryReading reading = read_trajectory_file(folder.file("a.mcap", testing::mcap_file(messages, {})));
   expect_equal(reading.trajectory, {trajectory.begin() + 1, trajectory.end()}, "one");
   EXPECT_EQ(reading.losses.refused, 1u);
+  // recorded as long after its time as the second one
+  Trajectory from_zero = trajectory;
+  for (std::size_t i = 0; i < from_zero.size(); ++i)
+    from_zero[i].time_us = 100'000 * static_cast<std::int64_t>(i);
+  reading = read_trajectory_file(folder.file(
+      "z.mcap",
+      testing::mcap_file(testing::as_messages(from_zero, "/odom", types[1], MessageEncoder::Kind::cdr), {})));
+  expect_equal(reading.trajectory, from_zero, "from zero");
+  EXPECT_FALSE(reading.losses.any());
   // the first of them was refused, and so was the bag by --strict: "others of the topic do"
   for (std::size_t i = 0; i < messages.size(); ++i) messages[i].data = unstamped(i);
   ReadOptions strict;

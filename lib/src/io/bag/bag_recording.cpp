@@ -115,6 +115,13 @@ void BagRecording::refuse(const std::string& topic, const std::string& reason) {
   if (losses_.refused++ == 0) losses_.first_refused = topic + ": " + reason;
 }
 
+/// Whether a first stamp of 0 is a time: the second message was recorded as long after its stamp as the first
+/// one, to a second. Of an unstamped message of a drive with wall-clock stamps that is off by years.
+bool BagRecording::begins_at_zero(const Usable& first, const Usable& second) {
+  constexpr std::int64_t most_ns = 1'000'000'000;  // queues delay by less
+  return std::abs(second.log_time_ns - second.stamp_ns - first.log_time_ns) <= most_ns;
+}
+
 /// At the time of its header; at that of recording where no message of the stream has another. A simulation
 /// that begins at zero has one message that looks unstamped, at its beginning: the second one decides.
 void BagRecording::take_usable(const Usable& usable, std::size_t stream, const TakePose& take) {
@@ -126,7 +133,12 @@ void BagRecording::take_usable(const Usable& usable, std::size_t stream, const T
   ++(stamped ? stamps.stamped : stamps.unstamped);
   constexpr const char* without = "it has no time stamp, others of the topic do";
   if (stamped) {
-    if (stamps.undecided) refuse(streams_[stream].topic, without);
+    if (stamps.undecided) {
+      if (begins_at_zero(*stamps.undecided, usable))
+        take_at(0, *stamps.undecided, stream, take);
+      else
+        refuse(streams_[stream].topic, without);
+    }
     stamps.undecided.reset();
     return take_at(usable.stamp_ns, usable, stream, take);
   }

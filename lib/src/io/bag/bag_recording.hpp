@@ -55,6 +55,7 @@ class BagRecording : public Recording {
   };
   void take_usable(const Usable& usable, std::size_t stream, const TakePose& take);
   void take_at(std::int64_t time_ns, const Usable& usable, std::size_t stream, const TakePose& take);
+  static bool begins_at_zero(const Usable& first, const Usable& second);
   void take_undecided(std::size_t stream, const TakePose& take);
   void refuse(const std::string& topic, const std::string& reason);
 
