@@ -29,6 +29,23 @@ class Columns : public ::testing::Test {
 };
 
 /// Bags as csv: the time of recording is 0.25 s later than the header's.
+/// phi, theta and psi are roll, pitch and yaw; theta alone is the heading of a robot in the plane.
+TEST_F(Columns, GreekLettersOfAnglesAreRollPitchAndYaw) {
+  for (const char* const header : {"t,x,y,z,phi,theta,psi", "t,x,y,z,phi[rad],theta[rad],psi[rad]"}) {
+    const Trajectory poses =
+        read(std::string(header) + "\n0,1,2,3,0.1,0.2,0.3\n1,1,2,3,0.1,0.2,0.3\n").trajectory;
+    ASSERT_EQ(poses.size(), 2u);
+    const Rotation expected = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()) *
+                              Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY()) *
+                              Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitX());
+    EXPECT_LT(to_pose(poses[0].pose).rotation.angularDistance(expected), 1e-12) << header;
+  }
+  const Trajectory psi_first = read("t,x,y,z,psi,theta,phi\n0,1,2,3,0.3,0,0\n1,1,2,3,0.3,0,0\n").trajectory;
+  EXPECT_NEAR(rotation_log(to_pose(psi_first[0].pose).rotation).z(), 0.3, 1e-12);
+  const Trajectory plane = read("t,x,y,theta,phi_rate\n0,1,2,0.3,9\n1,1,2,0.3,9\n").trajectory;
+  EXPECT_NEAR(rotation_log(to_pose(plane[0].pose).rotation).z(), 0.3, 1e-12);
+}
+
 TEST_F(Columns, TheTimeOfTheHeaderCounts) {
   const std::string pose = "x,y,z,qx,qy,qz,qw\n", row = "1,2,3,0,0,0,1\n";
   struct Export {

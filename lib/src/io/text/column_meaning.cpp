@@ -136,6 +136,12 @@ Meaning meaning_of_velocity(const ColumnName& name) {
   return {};
 }
 
+/// Whether it is this Greek letter of an angle, and no rate, bias or standard deviation of it.
+bool is_angle_called(const ColumnName& name, std::string_view letter) {
+  return !name.index && !name.words.empty() && name.words.back() == letter &&
+         std::none_of(name.words.begin(), name.words.end(), is_no_pose);
+}
+
 }  // namespace
 
 ColumnName parse_column_name(std::string_view text) {
@@ -189,6 +195,20 @@ Meaning meaning_of(const ColumnName& name) {
   if (is_one_of(last, {"heading", "azimuth"})) return {Quantity::heading, 2};
   if (const Meaning axis = meaning_of_axis(name); axis.rank > 0) return axis;
   return meaning_of_time(name);
+}
+
+bool have_euler_letters(const std::vector<ColumnName>& names) {
+  const auto has = [&](std::string_view letter) {
+    return std::any_of(names.begin(), names.end(),
+                       [&](const ColumnName& name) { return is_angle_called(name, letter); });
+  };
+  return has("phi") + has("theta") + has("psi") >= 2;
+}
+
+Meaning meaning_among_euler_letters(const ColumnName& name) {
+  if (is_angle_called(name, "phi")) return {Quantity::roll, 2};
+  if (is_angle_called(name, "theta")) return {Quantity::pitch, 2};
+  return meaning_of(name);
 }
 
 }  // namespace egocal::detail

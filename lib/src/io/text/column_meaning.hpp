@@ -32,4 +32,11 @@ inline constexpr int time_of_header = 5;
 
 Meaning meaning_of(const ColumnName& name);
 
+/// Whether the names hold two of phi, theta and psi, which are then roll, pitch and yaw. theta alone is a
+/// heading, and so is psi.
+bool have_euler_letters(const std::vector<ColumnName>& names);
+
+/// What a name means among such names.
+Meaning meaning_among_euler_letters(const ColumnName& name);
+
 }  // namespace egocal::detail

@@ -154,8 +154,10 @@ ColumnMap columns_from_names(const std::vector<std::string_view>& names) {
   parsed.reserve(names.size());
   for (const std::string_view name : names) parsed.push_back(parse_column_name(name));
   Candidates all;
+  const bool letters = have_euler_letters(parsed);
   for (std::size_t i = 0; i < names.size(); ++i)
-    if (const Meaning meaning = meaning_of(parsed[i]); meaning.rank > 0)
+    if (const Meaning meaning = letters ? meaning_among_euler_letters(parsed[i]) : meaning_of(parsed[i]);
+        meaning.rank > 0)
       all[static_cast<std::size_t>(meaning.quantity)].push_back({i, meaning.rank, &parsed[i]});
   Chosen chosen = choose(all);
   ColumnMap map;

@@ -14,13 +14,32 @@ namespace {
 
 constexpr std::size_t sniffed_bytes = 64 << 10;  // a limit: some hundred rows show the layout
 
-/// JSON, XML, point clouds and pose graphs are text, but no tables.
+/// "- key: value" or "key:", after any blanks.
+bool is_yaml_line(std::string_view line) {
+  line.remove_prefix(std::min(line.find_first_not_of(" -"), line.size()));
+  const std::size_t key = line.find_first_of(": \t,;");
+  return key != std::string_view::npos && key > 0 && line[key] == ':' &&
+         (key + 1 == line.size() || line[key + 1] == ' ' || line[key + 1] == '\r');
+}
+
+bool is_yaml(std::string_view text) {
+  if (text.starts_with("%YAML") || text.starts_with("---\n")) return true;
+  for (int lines = 0; lines < 2; ++lines) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos || !is_yaml_line(text.substr(0, end))) return false;
+    text.remove_prefix(end + 1);
+  }
+  return true;
+}
+
+/// JSON, XML, YAML, point clouds and pose graphs are text, but no tables.
 void refuse_other_text(const std::string& file, std::string_view text) {
   const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
   const std::string_view start = text.substr(begin, 16);
   const auto begins = [&](std::string_view word) { return start.substr(0, word.size()) == word; };
   const char* kind = begins("{") || begins("[")             ? "JSON"
                      : begins("<")                          ? "XML"
+                     : is_yaml(text.substr(begin))          ? "YAML"
                      : begins("ply") || begins("# .PCD")    ? "a point cloud"
                      : begins("VERTEX_") || begins("EDGE_") ? "a pose graph (g2o)"
                                                             : nullptr;

@@ -11,6 +11,7 @@
 #include "io/text/named_columns.hpp"
 #include "io/text/rotation_rows.hpp"
 #include "io/text/time_columns.hpp"
+#include "io/text/title_lines.hpp"
 
 namespace egocal::detail {
 
@@ -107,6 +108,23 @@ bool set_matrix(TextLayout& layout, const std::vector<std::string_view>& row) {
   return true;
 }
 
+/// Lines of titles become one header where they make sense, and are not read where --columns names the
+/// columns. Number of the last one; 0: there are none.
+long read_titles(TextLayout& layout, Sniffed& sniffed, const ReadOptions& options) {
+  const TitleLines titles = title_lines(sniffed, layout.separator);
+  if (titles.last == 0) return 0;
+  std::vector<std::string_view> names;
+  split(titles.names, layout.separator, names);
+  const bool make_sense = options.columns.empty() && columns_from_names(names).complete();
+  if (!make_sense && options.columns.empty()) return 0;
+  const std::string lines =
+      "lines " + std::to_string(sniffed.data.front().number) + " to " + std::to_string(titles.last);
+  layout.notes.push_back(make_sense ? "the names of the columns are those of " + lines
+                                    : lines + " are not read: they are before the first row of numbers");
+  replace_titles(sniffed, titles, make_sense);
+  return titles.last;
+}
+
 }  // namespace
 
 TextLayout detect_layout(ByteSource& source, const ReadOptions& options) {
@@ -114,11 +132,13 @@ TextLayout detect_layout(ByteSource& source, const ReadOptions& options) {
   if (sniffed.data.empty()) throw error_at(source.file(), 0, "", source.why_empty());
   TextLayout layout;
   layout.separator = separator_of(sniffed, options.columns);
+  const long titles = layout.separator == ' ' ? 0 : read_titles(layout, sniffed, options);
   layout.decimal_comma = layout.separator != ',' && has_decimal_commas(sniffed, layout.separator);
   if (layout.decimal_comma)
     for (Line& line : sniffed.data)
       if (!is_header(line.text, layout.separator)) std::replace(line.text.begin(), line.text.end(), ',', '.');
   const bool named = set_named(layout, sniffed, options, source.file());
+  if (titles > 0) layout.header_line = titles;
   if (!named && layout.separator == '\t') layout.separator = ' ';
   std::vector<std::string_view> row;
   split(first_whole_row(sniffed, layout.separator).text, layout.separator, row);

@@ -18,7 +18,7 @@ struct TextLayout {
   std::string format;          ///< "TUM", "EuRoC csv", "KITTI", "table"
   char separator = ' ';        ///< ' ' for blanks and tabs that merge, '\t', ',' or ';'
   bool decimal_comma = false;  ///< 1,5 between semicolons, blanks or tabs
-  long header_line = 0;        ///< that holds names and no data; 0: none
+  long header_line = 0;        ///< that holds names and no data, as all before it; 0: none
   ColumnMap columns;           ///< of formats with columns
   bool named = false;          ///< the columns have names in the file or by --columns: fields may be empty
   bool matrix = false;         ///< rows of a 3 x 4 pose matrix, after a first column where first_column is 1

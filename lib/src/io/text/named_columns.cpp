@@ -128,7 +128,7 @@ bool set_named(TextLayout& layout, const Sniffed& sniffed, const ReadOptions& op
     if (!layout.columns.complete())
       throw error_at(file, layout.header_line, "",
                      "the header names " + layout.columns.missing() +
-                         "; name the columns with --columns t,x,y,z,qx,qy,qz,qw");
+                         "; name the columns with --columns t,x,y,z,qx,qy,qz,qw (- for others)");
     check_columns(names, layout.columns, file, layout.header_line);
     note_rivals(layout);
   } else {

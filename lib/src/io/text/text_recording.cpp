@@ -304,12 +304,25 @@ double TextRecording::angle(const TextRows& rows, Quantity quantity) const {
   return value(rows, quantity, angle_in_si_);
 }
 
+/// 0 0 0 1 of a 4 x 4 pose; column by column the last four numbers hold the position.
+void TextRecording::check_last_row(const TextRows& rows) const {
+  constexpr double last_row[] = {0, 0, 0, 1};
+  for (std::size_t i = 12; layout_.first_column + i < layout_.fields; ++i) {
+    const std::size_t index = layout_.first_column + i;
+    if (value(rows, index) == last_row[i - 12]) continue;
+    throw error_at(file_, rows.lines.number(), "field " + std::to_string(index + 1),
+                   "expected 0 0 0 1 at the end of a 4 x 4 pose, got " + quoted(rows.fields[index]) +
+                       "; write the matrix row by row");
+  }
+}
+
 DualQuaternion TextRecording::pose_of_matrix(const TextRows& rows) const {
   double v[12];
   for (std::size_t i = 0; i < 12; ++i) v[i] = value(rows, layout_.first_column + i);
   Eigen::Matrix3d R;
   R << v[0], v[1], v[2], v[4], v[5], v[6], v[8], v[9], v[10];
   if (!is_rotation(R)) throw error_at(file_, rows.lines.number(), "", "the 3 x 3 part is not a rotation");
+  check_last_row(rows);
   const Eigen::Quaterniond q = Eigen::Quaterniond(R).normalized();
   const CheckedPose pose = checked_pose({v[3], v[7], v[11]}, {q.w(), q.x(), q.y(), q.z()});
   if (!pose.reason.empty()) throw error_at(file_, rows.lines.number(), "", pose.reason);

@@ -38,6 +38,7 @@ class TextRecording : public Recording {
   bool may_end_in_a_cut_number(const TextRows& rows) const;
   std::optional<StampedPose> pose_of_row(const TextRows& rows);
   std::int64_t time_of_row(const TextRows& rows) const;
+  void check_last_row(const TextRows& rows) const;
   DualQuaternion pose_of_matrix(const TextRows& rows) const;
   CheckedPose pose_of_columns(const TextRows& rows);
   std::optional<DualQuaternion> pose_of_twist(const TextRows& rows, std::int64_t time_us);

@@ -32,7 +32,7 @@ struct TextRows {
   bool next() {
     std::string_view line;
     while (lines.next(line)) {
-      if (lines.number() == layout.header_line || !is_data(line)) continue;
+      if (lines.number() <= layout.header_line || !is_data(line)) continue;
       line = without_comment(line);
       if (layout.decimal_comma) {
         points.assign(line);
