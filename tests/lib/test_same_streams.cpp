@@ -35,6 +35,50 @@ TEST(SameStreams, AStreamThatWasMadeFromTheOtherIsNamed) {
   EXPECT_NE(finding->message.find("agree to rounding"), std::string::npos) << finding->message;
 }
 
+/// Two attitude sensors beside one GNSS receiver: the lever arm between them is none of the answer's.
+TEST(SameStreams, PositionsOfOneSensorAreNamed) {
+  const testing::Streams right = drive(Terrain::rough);
+  ASSERT_EQ(right.a.size(), right.b.size());
+  Trajectory made = right.b;
+  const Pose other_world{rotation_exp({0.1, 0.2, -0.7}), {3, -2, 1}};
+  for (const bool turned : {false, true}) {
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      Pose pose = to_pose(right.b[i].pose);
+      pose.translation = to_pose(right.a[i].pose).translation;
+      made[i].pose = canonical_sign(to_dual_quaternion(turned ? other_world * pose : pose));
+    }
+    const Calibration calibration = calibrate(right.a, made);
+    const Finding* const finding = find(calibration, "same_stream");
+    ASSERT_NE(finding, nullptr) << calibration.reason;
+    EXPECT_NE(finding->message.find("travel the same distances to rounding"), std::string::npos)
+        << finding->message;
+  }
+}
+
+/// Poses of which one half was never filled in, in both streams: the motions agree, and hold nothing of it.
+TEST(SameStreams, AHalfThatIsMissingInBothIsNotKnown) {
+  const testing::Streams right = drive(Terrain::rough);
+  for (const Eigen::Vector3d& constant : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(500, 5, -1)}) {
+    Trajectory a = right.a, b = right.b;
+    for (Trajectory* const stream : {&a, &b})
+      for (StampedPose& pose : *stream)
+        pose.pose = to_dual_quaternion(Pose{to_pose(pose.pose).rotation, constant});
+    const Calibration calibration = calibrate(a, b);
+    EXPECT_EQ(calibration.verdict, Verdict::incomplete) << calibration.reason;
+    const Finding* const finding = find(calibration, "missing_both");
+    ASSERT_NE(finding, nullptr) << calibration.reason;
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(calibration.observability.observable[i], i >= 3) << i;
+  }
+  Trajectory a = right.a, b = right.b;
+  for (Trajectory* const stream : {&a, &b})
+    for (StampedPose& pose : *stream)
+      pose.pose = to_dual_quaternion(Pose{Rotation::Identity(), to_pose(pose.pose).translation});
+  const Calibration calibration = calibrate(a, b);
+  EXPECT_NE(find(calibration, "missing_both"), nullptr) << calibration.reason;
+  EXPECT_NE(calibration.verdict, Verdict::good);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_FALSE(calibration.observability.observable[i]) << i;
+}
+
 /// Rotations of one sensor in both streams, positions that are smoothed.
 TEST(SameStreams, RotationsThatWereMadeFromTheOthersAreNamed) {
   const testing::Streams right = drive(Terrain::rough);

@@ -10,8 +10,10 @@ namespace egocal::tools {
 
 std::array<Backing, 6> backing_of(const Calibration& calibration) {
   std::array<Backing, 6> backing = bus::backing_of(calibration.observability.observable, calibration.problem);
-  // the answer has the angles that both streams assume, no nominal ones
-  const auto assumed = [](const Finding& finding) { return finding.code == "flat_both"; };
+  // the answer has the directions that both streams assume, no nominal ones
+  const auto assumed = [](const Finding& finding) {
+    return finding.code == "flat_both" || finding.code == "missing_both";
+  };
   if (std::any_of(calibration.findings.begin(), calibration.findings.end(), assumed))
     for (std::size_t i = 3; i < backing.size(); ++i)
       if (backing[i] == Backing::nominal) backing[i] = Backing::none;

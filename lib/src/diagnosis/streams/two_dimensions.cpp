@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/streams/two_dimensions.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "diagnosis/streams/turning_axis.hpp"
@@ -33,20 +34,20 @@ Finding flat_both(const std::array<bool, 6>& assumed) {
 
 }  // namespace
 
-std::optional<TwoDimensions> two_dimensions(const Motions& motions, const TwoDimensionsOptions& options) {
+std::optional<Assumed> two_dimensions(const Motions& motions, const TwoDimensionsOptions& options) {
   if (motions.all.size() < options.least) return std::nullopt;
   const TurningAxis a = turning_axis(motions, Side::a), b = turning_axis(motions, Side::b);
   if (a.tilt > options.level || b.tilt > options.level) return std::nullopt;
   if (!(motions.rotation > options.least_turn) ||
       !(turning_difference(motions, a.axis, b.axis) > options.over_level * options.level))
     return std::nullopt;
-  TwoDimensions result;
+  Assumed result;
   for (std::size_t i = 0; i < 3; ++i) {
     const double part = std::abs(a.axis[static_cast<Eigen::Index>(i)]);
-    result.assumed[i] = part > options.across;
-    result.assumed[3 + i] = part <= options.across;
+    result.directions[i] = part > options.across;
+    result.directions[3 + i] = part <= options.across;
   }
-  result.finding = flat_both(result.assumed);
+  result.finding = flat_both(result.directions);
   return result;
 }
 

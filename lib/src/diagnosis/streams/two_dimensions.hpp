@@ -4,11 +4,10 @@
 // files assume. The motions then agree about roll and pitch without an error, as neither measured them.
 #pragma once
 
-#include <array>
 #include <optional>
 
 #include "diagnosis/motions/motions.hpp"
-#include "egocal/diagnosis/verdict.hpp"
+#include "diagnosis/streams/assumed.hpp"
 
 namespace egocal::detail {
 
@@ -26,13 +25,8 @@ struct TwoDimensionsOptions {
   double across = 0.94;
 };
 
-/// Both streams turn about one axis alone.
-struct TwoDimensions {
-  Finding finding;                ///< flat_both, certain
-  std::array<bool, 6> assumed{};  ///< x y z roll pitch yaw, in the frame of a
-};
-
-/// Empty where one of them turns about further axes. Deterministic; thread-safe.
-std::optional<TwoDimensions> two_dimensions(const Motions& motions, const TwoDimensionsOptions& options = {});
+/// flat_both: both streams turn about one axis alone. Empty where one of them turns about further axes.
+/// Deterministic; thread-safe.
+std::optional<Assumed> two_dimensions(const Motions& motions, const TwoDimensionsOptions& options = {});
 
 }  // namespace egocal::detail

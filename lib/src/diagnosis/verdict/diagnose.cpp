@@ -25,8 +25,10 @@
 #include "diagnosis/motions/answer_change.hpp"
 #include "diagnosis/motions/fit.hpp"
 #include "diagnosis/motions/standing_still.hpp"
+#include "diagnosis/streams/copied_positions.hpp"
 #include "diagnosis/streams/copied_rotations.hpp"
 #include "diagnosis/streams/interpolated_stream.hpp"
+#include "diagnosis/streams/missing_in_both.hpp"
 #include "diagnosis/streams/mixed_frames.hpp"
 #include "diagnosis/streams/pace.hpp"
 #include "diagnosis/streams/stamps_in_bursts.hpp"
@@ -105,10 +107,18 @@ void add_same_stream(const Evidence& evidence, const Answered& answered, const D
     checks.known_translation *= of_a_metre;
   }
   const auto filled = [](const Finding& one) { return one.code.starts_with("filled_"); };
+  std::vector<Finding> found = made_from_each_other(result.fit);
+  if (found.empty())
+    if (std::optional<Finding> positions =
+            copied_positions(evidence.instants, evidence.given.explained.motions)) {
+      // turned rotations beside positions of another sensor are its effect
+      std::erase_if(result.findings, [](const Finding& one) { return one.code.starts_with("axes_"); });
+      if (!has(result.findings, "same_stream")) result.findings.push_back(*std::move(positions));
+      return;
+    }
   if (std::any_of(result.findings.begin(), result.findings.end(),
                   [&](const Finding& one) { return certain_of_either(one) && !filled(one); }))
     return;
-  std::vector<Finding> found = made_from_each_other(result.fit);
   if (found.empty())
     if (std::optional<Finding> rotations = copied_rotations(evidence.streams.a, evidence.streams.b,
                                                             evidence.clock, evidence.streams.max_gap))
@@ -208,11 +218,15 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   Diagnosis result;
   result.fit = fit_of(evidence, answered, options);
   result.findings = foreseen.findings;
-  std::optional<TwoDimensions> level;
+  std::optional<Assumed> level;
   if (pairing.mode != Mode::planar) level = two_dimensions(motions);
-  if (level) result.assumed = level->assumed;
-  for (std::size_t i = 0; i < 6; ++i)
-    if (result.assumed[i]) answered.observability.observable[i] = false;
+  std::optional<Assumed> missing = missing_in_both(motions);
+  for (const std::optional<Assumed>* assumed : {&level, &missing})
+    for (std::size_t i = 0; i < 6; ++i)
+      if (*assumed && (*assumed)->directions[i]) {
+        result.assumed[i] = true;
+        answered.observability.observable[i] = false;
+      }
   // while the sensors stand, noise would be compared with noise
   const Motions moving = without_rest(motions, to_pose(answered.T_a_b));
   const RobustFit at_answer = evaluated(moving, answered.T_a_b);
@@ -223,7 +237,8 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   WrongStream wrong_stream(evidence, answered.problem.mode, options);
   replace_by_contents(options, wrong_stream, result.findings);
   const bool explained = are_explained(foreseen, answered, options, wrong_stream, result.findings);
-  if (has(result.findings, "too_little_motion")) misfit = {};  // noise contradicts every answer
+  // noise, or rounding, contradicts every answer
+  if (missing || has(result.findings, "too_little_motion")) misfit = {};
   if (!explained)
     look_further(pairing, evidence, answered, result.fit, options, wrong_stream, misfit, result.findings);
   if (pairing.mode != Mode::planar) name_clock_step(evidence, result.fit, options, result.findings);
@@ -231,6 +246,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   misfit = where_known(misfit, moving, answered, best, result.findings);
   result.findings.insert(result.findings.begin(), foreseen.frozen.begin(), foreseen.frozen.end());
   if (level) result.findings.push_back(std::move(level->finding));
+  if (missing) result.findings.insert(result.findings.begin(), std::move(missing->finding));
   judge(result, answered, misfit, options);
   return result;
 }

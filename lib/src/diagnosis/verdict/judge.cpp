@@ -151,8 +151,8 @@ bool undersampling(const Finding& finding) {
 }
 
 /// Streams that cannot show all directions, whatever is driven.
-bool two_dimensional(const Finding& finding) {
-  return finding.code == "flat_both";
+bool shows_too_little(const Finding& finding) {
+  return finding.code == "flat_both" || finding.code == "missing_both";
 }
 
 /// A direction that is taken from it is not known; the motions are as good as without it.
@@ -166,7 +166,7 @@ bool misread(const Finding& finding) {
          finding.code != "clock_offset" && finding.code != "clock_drift" && finding.code != "clock_step" &&
          finding.code != "mount_moved" && finding.code != "scale_change" &&
          !finding.code.starts_with("late_positions_") && !finding.code.starts_with("held_") &&
-         !stream_fault(finding) && !undersampling(finding) && !two_dimensional(finding);
+         !stream_fault(finding) && !undersampling(finding) && !shows_too_little(finding);
 }
 
 /// A clock that is off by little, which noise alone may show: half a minute on rails knows x to metres, and
@@ -241,7 +241,7 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
     const double far = far_off(finding, answered, options);
     const bool certain = certain_of_either(finding);
     const double apart = certain && !within_what_is_stated(finding, answered, options.clock_check) ? far : 0;
-    if (finding.code == "too_little_motion" || two_dimensional(finding))
+    if (finding.code == "too_little_motion" || shows_too_little(finding))
       verdict = Verdict::incomplete;
     else if (undersampling(finding))
       verdict = Verdict::good;  // what is unknown by it counts as unknown
@@ -301,7 +301,7 @@ void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
     const bool changes =
         one.code == "scale_change" && !slight_scale_change(one, far_off(one, answered, options));
     return one.code == "too_little_motion" || moved || changes ||
-           (certain_of_either(one) && !stream_fault(one) && !undersampling(one) && !two_dimensional(one));
+           (certain_of_either(one) && !stream_fault(one) && !undersampling(one) && !shows_too_little(one));
   };
   if (fit.verdict < Verdict::doubtful &&
       std::none_of(diagnosis.findings.begin(), diagnosis.findings.end(), contradicts_itself))
@@ -325,7 +325,7 @@ void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
   const Known known = known_to(answered, unstable, options);
   const auto says_why = std::find_if(
       diagnosis.findings.begin(), diagnosis.findings.end(),
-      [](const Finding& one) { return one.code == "too_little_motion" || two_dimensional(one); });
+      [](const Finding& one) { return one.code == "too_little_motion" || shows_too_little(one); });
   if (says_why != diagnosis.findings.end()) {
     diagnosis.verdict = Verdict::incomplete;
     diagnosis.reason = says_why->message + " " + says_why->remedy;
