@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "diagnosis/explanations/times/two_times.hpp"
+#include "diagnosis/motions/mount_fit.hpp"
 #include "diagnosis/motions/standing_still.hpp"
 #include "diagnosis/verdict/far_off.hpp"
 #include "diagnosis/words/wording.hpp"
@@ -23,19 +23,19 @@ using Eigen::Vector3d;
 
 namespace {
 
-// places in TwoTimes of the numbers of the lengths
-constexpr int of_all = time_of_rotations, of_turning = time_of_positions;
+// places in MountNumbers of the numbers of the lengths
+constexpr int of_all = first_number, of_turning = second_number;
 
 /// As StreamOfTwoTimes::motion(), with a part s + k w of the lengths in place of times:
 ///   R_T' (R_a t + t_a - t) - t_b = (1 - R_b) y - t_b x x + (s + k w) l,
 /// where l is the translation of b, as `side` measured it.
-std::vector<TwoTimesMotion> linear_motions(const Explained& given, Side side,
-                                           const LengthsInTurnsOptions& options) {
+std::vector<LinearMotion> linear_motions(const Explained& given, Side side,
+                                         const LengthsInTurnsOptions& options) {
   const Pose T = to_pose(given.fit.T);
   const Matrix3d R = T.rotation.toRotationMatrix();
   const double usual = usual_angle(given.motions);
   const std::size_t n = given.motions.all.size(), count = std::min(n, options.fit.most);
-  std::vector<TwoTimesMotion> result;
+  std::vector<LinearMotion> result;
   for (std::size_t k = 0; usual > 0 && k < count; ++k) {
     const Motion& motion = given.motions.all[k * n / count];
     const Rotation R_b = to_pose(motion.b).rotation;
@@ -43,7 +43,7 @@ std::vector<TwoTimesMotion> linear_motions(const Explained& given, Side side,
     const Vector3d by_a = R.transpose() * (motion.R_a * T.translation + motion.t_a - T.translation);
     const double turning = std::min(0.5 * (motion.angle_a + motion.angle_b) / usual, options.most_turning);
     const Vector3d length = side == Side::b ? motion.t_b : by_a;
-    TwoTimesMotion here;
+    LinearMotion here;
     here.rotation =
         rotation_log(T.rotation.conjugate() * to_pose(motion.a).rotation * T.rotation * R_b.conjugate());
     here.translation = by_a - motion.t_b;
@@ -55,15 +55,15 @@ std::vector<TwoTimesMotion> linear_motions(const Explained& given, Side side,
 }
 
 LengthsInTurns by_lengths_of(const Explained& given, Side side, const LengthsInTurnsOptions& options) {
-  const std::vector<TwoTimesMotion> motions = linear_motions(given, side, options);
+  const std::vector<LinearMotion> motions = linear_motions(given, side, options);
   LengthsInTurns found;
   if (motions.size() < options.least) return found;
-  const TwoTimesFit fit(motions, options.fit);
-  const TwoTimes x = fit.best(FreeTimes::two);
+  const MountFit fit(motions, options.fit);
+  const MountNumbers x = fit.best(FreeNumbers::two);
   found.lost = x[of_turning];
   found.straight_on = 1 + x[of_all];
-  found.stddev = fit.stddev(TwoTimes::Unit(of_turning));
-  found.gain = fit.gain(fit.best(FreeTimes::first), x);
+  found.stddev = fit.stddev(MountNumbers::Unit(of_turning));
+  found.gain = fit.gain(fit.best(FreeNumbers::first), x);
   const Pose T = to_pose(given.fit.T);
   found.T_a_b = to_dual_quaternion(
       Pose{T.rotation * rotation_exp(x.head<3>()), T.translation + T.rotation * x.segment<3>(3)});

@@ -7,14 +7,14 @@
 #include <optional>
 
 #include "diagnosis/explanations/explanations.hpp"
-#include "diagnosis/explanations/times/two_times.hpp"
+#include "diagnosis/motions/mount_fit.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
 
 namespace egocal::detail {
 
 /// Study: docs/trust_rules.md, "Scale".
 struct LengthsInTurnsOptions {
-  TwoTimesOptions fit;     ///< the same least squares, with two numbers of the lengths
+  MountFitOptions fit;
   std::size_t least = 60;  ///< motions; fewer do not show eight numbers and their scatter
   /// Turning angles beyond this many times the usual one count as that: few motions turn by more.
   double most_turning = 3;

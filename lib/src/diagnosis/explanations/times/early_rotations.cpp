@@ -116,21 +116,21 @@ double EarlyRotations::sigmas() const {
 std::optional<EarlyRotations> early_rotations(const Instants& instants, const Explained& given, Side side,
                                               const EarlyRotationsOptions& early) {
   const StreamOfTwoTimes stream(instants, given, side, early.times);
-  const std::vector<TwoTimesMotion> motions = stream.motions(given, early.times.most);
+  const std::vector<LinearMotion> motions = stream.motions(given, early.times.fit.most);
   if (motions.size() < early.least) return std::nullopt;
-  const TwoTimesFit fit(motions, early.times);
-  const TwoTimes x = fit.best(FreeTimes::two);
-  const TwoTimes rotations = TwoTimes::Unit(time_of_rotations),
-                 apart = rotations - TwoTimes::Unit(time_of_positions);
+  const MountFit fit(motions, early.times.fit);
+  const MountNumbers x = fit.best(FreeNumbers::two);
+  const MountNumbers rotations = MountNumbers::Unit(time_of_rotations),
+                     apart = rotations - MountNumbers::Unit(time_of_positions);
   EarlyRotations found;
   found.side = side;
   found.seconds = apart.dot(x);
   found.stddev = fit.stddev(apart);
   found.of_rotations = rotations.dot(x);
   found.of_rotations_stddev = fit.stddev(rotations);
-  found.gain = fit.gain(fit.best(FreeTimes::one_for_both), x);
+  found.gain = fit.gain(fit.best(FreeNumbers::one_for_both), x);
   found.T_a_b = stream.T_a_b(x);
-  found.T_a_b_as_given = stream.T_a_b(fit.best(FreeTimes::none));
+  found.T_a_b_as_given = stream.T_a_b(fit.best(FreeNumbers::none));
   return found;
 }
 
