@@ -42,14 +42,17 @@ struct Tally {
 
 struct Row {
   int all = 0, covered = 0;
-  double worst = 1;                   ///< covered, of a machine
-  double log_ratios = 0, ratios = 0;  ///< of standard deviation to error
+  double worst = 1;                           ///< covered, of a machine
+  double log_ratios = 0, ratios = 0;          ///< of standard deviation to error
+  std::array<int, 6> all_of{}, covered_of{};  ///< each direction
 
   void add(const Tally& machine) {
     int all_here = 0, covered_here = 0;
     for (std::size_t k = 0; k < 6; ++k) {
       all_here += machine.all[k];
       covered_here += machine.covered[k];
+      all_of[k] += machine.all[k];
+      covered_of[k] += machine.covered[k];
       if (machine.all[k] == 0) continue;
       constexpr double median_error = 0.6745;  // of a normal error of one standard deviation
       log_ratios += std::log(median_error * median(machine.stddevs[k]) / median(machine.errors[k]));
@@ -65,6 +68,12 @@ struct Row {
     std::snprintf(line, sizeof line, "%.1f %%, worst %.1f %%, %.2f", 100.0 * covered / all, 100 * worst,
                   std::exp(log_ratios / ratios));
     return line;
+  }
+  void print_directions() const {
+    constexpr const char* names[] = {"x", "y", "z", "roll", "pitch", "yaw"};
+    for (std::size_t k = 0; k < 6; ++k)
+      if (all_of[k] > 0) std::fprintf(stderr, " %s %.1f %%", names[k], 100.0 * covered_of[k] / all_of[k]);
+    std::fprintf(stderr, "\n");
   }
 };
 
@@ -109,6 +118,7 @@ int main(int argc, char** argv) {
   std::vector<double> sizes{20, 25, 30, 50, 100};
   std::vector<std::string> only;
   bool no_plane = false;
+  bool directions = false;
   bool check = false;
   std::string write;
   app.add_option("--drives", study.drives, "of each machine")
@@ -119,6 +129,7 @@ int main(int argc, char** argv) {
   app.add_option("--only", only, "noises whose names contain one of these words");
   app.add_flag("--oracle", study.with_oracle, "beside an estimator that is told the form of the noise");
   app.add_flag("--no-plane", no_plane, "in three dimensions alone");
+  app.add_flag("--directions", directions, "print also how often each one is covered, to standard error");
   app.add_flag("--check", check, "exit 1 where not 92 to 99 % are covered over all rows");
   app.add_option("--write", write, "a page: put the table in its place");
   if (const auto code = app.parse(argc, argv)) return *code;
@@ -140,6 +151,7 @@ int main(int argc, char** argv) {
         measure(study, noise, static_cast<int>(motions), plane, ours, told);
         table.rows.back().push_back(ours.text());
         if (study.with_oracle) table.rows.back().push_back(told.text());
+        if (directions) ours.print_directions();
         all += ours.all;
         covered += ours.covered;
       }
