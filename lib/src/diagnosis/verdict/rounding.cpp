@@ -11,23 +11,18 @@ namespace egocal::detail {
 
 namespace {
 
-/// Times the step. Multiples of a step are never in the middle of two multiples of an odd number of it.
-constexpr int coarser = 3;
-/// Variance that rounding to such steps adds, of that which the rounding before has made: n^2 - 1.
-constexpr double of_coarser = coarser * coarser - 1;
-
 /// The nearest of the numbers (coarser k + offset) step.
-double rounded(double x, double step, int offset) {
+double rounded(double x, double step, int coarser, int offset) {
   if (!(step > 0)) return x;
   return (coarser * std::round((x / step - offset) / coarser) + offset) * step;
 }
 
-Trajectory rounded(Trajectory trajectory, const Written& written, int offset) {
+Trajectory rounded(Trajectory trajectory, const Written& written, int coarser, int offset) {
   for (StampedPose& stamped : trajectory) {
     Pose pose = to_pose(stamped.pose);
     Eigen::Vector4d q = pose.rotation.coeffs();
-    for (double& x : q) x = rounded(x, written.rotation.step(std::abs(x)), offset);
-    for (double& x : pose.translation) x = rounded(x, written.position.step(std::abs(x)), offset);
+    for (double& x : q) x = rounded(x, written.rotation.step(std::abs(x)), coarser, offset);
+    for (double& x : pose.translation) x = rounded(x, written.position.step(std::abs(x)), coarser, offset);
     if (q.squaredNorm() > 0) pose.rotation = Eigen::Quaterniond(Eigen::Vector4d(q.normalized()));
     stamped.pose = to_dual_quaternion(pose);
   }
@@ -56,16 +51,24 @@ std::array<double, 6> rounding_stddev(const MiddlePart& part, const Instants& in
   AnswerChangeOptions change = options.change;
   change.motions = tuning.motions;
   change.longer = std::max(1, stride);
-  Vector6d sum = Vector6d::Zero();
+  const int coarser = tuning.coarser;
+  const double number = coarser;
+  Vector6d mean = Vector6d::Zero(), squares = Vector6d::Zero();
   for (int offset = 0; offset < coarser; ++offset) {
-    const Trajectory a = rounded(part.a, of_a, offset), b = rounded(part.b, of_b, offset);
+    const Trajectory a = rounded(part.a, of_a, coarser, offset), b = rounded(part.b, of_b, coarser, offset);
     const Instants otherwise = synchronised(a, b, {time_offset, 0, 0}, max_gap, 1, options.motions);
     const std::optional<AnswerChange> one = answer_change(instants, otherwise, T_a_b, change);
     if (!one) return stddev;
+    mean += one->size / number;
     // what is chance in each part is in the scatter between them
-    sum += (one->size.cwiseAbs2() - one->variance) / (of_coarser * coarser);
+    squares += (one->size.cwiseAbs2() - one->variance) / number;
   }
-  for (std::size_t i = 0; i < 6; ++i) stddev[i] = std::sqrt(std::max(0.0, sum[static_cast<Eigen::Index>(i)]));
+  // The errors that the offsets make of a number add up to nothing, so their mean has no part that is linear
+  // in them. Their variance, and what that moves an answer by, is n^2 - 1 times that of the rounding before.
+  const double times = number * number - 1;
+  const Vector6d linear = (squares - mean.cwiseAbs2()).cwiseMax(0.0) / times, quadratic = mean / times;
+  for (Eigen::Index i = 0; i < 6; ++i)
+    stddev[static_cast<std::size_t>(i)] = std::sqrt(linear[i] + quadratic[i] * quadratic[i]);
   return stddev;
 }
 

@@ -15,16 +15,19 @@ namespace egocal::detail {
 
 struct RoundingOptions {
   WrittenDigitsOptions digits;
-  std::size_t motions = 1000;  ///< of each length that are looked at: 7 ms for each of three roundings
+  std::size_t motions = 1000;  ///< of each length that are looked at: 7 ms for each of `coarser` roundings
   /// Rounding of less than this part of the usual motion moves no answer by what it states: of 4 decimals of
   /// a quaternion (0.003 deg) in motions of 3 degrees, of a millimetre in a metre.
   double least = 1e-3;
+  /// Times the step are those that the poses are rounded to once more: odd, as multiples of a step are then
+  /// never in the middle of two of these. 3: the least that is, so the nearest to the rounding that was.
+  int coarser = 3;
 };
 
 /// One standard deviation of the answer by the rounding of both streams, as far as parts of the drive share
 /// it (x y z roll pitch yaw in sensor a's frame [m, rad]); 0 where nothing was rounded. It is measured: the
-/// poses are rounded once more, to steps of three times the size. stride: of the answer, in instants.
-/// motions: those of the answer.
+/// poses are rounded once more, to steps that are `coarser` times as large. stride: of the answer, in
+/// instants. motions: those of the answer.
 std::array<double, 6> rounding_stddev(const MiddlePart& part, const Instants& instants, int stride,
                                       const Motions& motions, const DualQuaternion& T_a_b, double time_offset,
                                       double max_gap, const DiagnosisOptions& options,
