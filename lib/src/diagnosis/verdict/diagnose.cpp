@@ -41,6 +41,7 @@
 #include "diagnosis/verdict/judge.hpp"
 #include "diagnosis/verdict/known_directions.hpp"
 #include "diagnosis/verdict/look_further.hpp"
+#include "diagnosis/verdict/possible_changes.hpp"
 #include "diagnosis/verdict/small_scale.hpp"
 #include "diagnosis/verdict/timing.hpp"
 #include "egocal/diagnosis/certain_of_either.hpp"
@@ -243,6 +244,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
     look_further(pairing, evidence, answered, result.fit, options, wrong_stream, misfit, result.findings);
   if (pairing.mode != Mode::planar) name_clock_step(evidence, result.fit, options, result.findings);
   add_what_is_beside(foreseen, options, wrong_stream, answered, result);
+  add_possible_changes(answered, result);
   misfit = where_known(misfit, moving, answered, best, result.findings);
   result.findings.insert(result.findings.begin(), foreseen.frozen.begin(), foreseen.frozen.end());
   if (level) result.findings.push_back(std::move(level->finding));
