@@ -21,12 +21,6 @@ namespace {
 using Eigen::Vector3d;
 using Changes = std::vector<Vector3d>;
 
-/// What a second of delay adds to the translation of each motion, in the frame of its begin [m/s].
-struct ByDelay {
-  Changes a, b;
-  const Changes& of(Side side) const { return side == Side::a ? a : b; }
-};
-
 /// Of the positions of a stream about an instant, by those on either side.
 class Speeds {
  public:
@@ -36,13 +30,16 @@ class Speeds {
             static_cast<std::size_t>(std::ceil(0.5 * late.least_span / std::max(instants.period, 1e-6))), 1,
             late.most_instants)) {}
 
-  std::pair<Vector3d, Vector3d> at(std::size_t i) const {
+  Vector3d at(std::size_t i, Side side) const {
     const std::size_t before = i >= side_ ? i - side_ : 0, after = std::min(i + side_, instants_.size() - 1);
-    const PosePair from = instants_.at(before), to = instants_.at(after);
     const double seconds = instants_.time(after) - instants_.time(before);
-    if (!(seconds > 0)) return {Vector3d::Zero(), Vector3d::Zero()};
-    return {(position_of(to.a) - position_of(from.a)) / seconds,
-            (position_of(to.b) - position_of(from.b)) / seconds};
+    if (!(seconds > 0)) return Vector3d::Zero();
+    return (position(after, side) - position(before, side)) / seconds;
+  }
+
+  Vector3d position(std::size_t i, Side side) const {
+    const PosePair poses = instants_.at(i);
+    return position_of(side == Side::a ? poses.a : poses.b);
   }
 
  private:
@@ -50,37 +47,74 @@ class Speeds {
   std::size_t side_;
 };
 
-ByDelay changes_of(const Instants& instants, const Motions& motions, const LatePositionsOptions& late) {
-  const Speeds speeds(instants, late);
-  const auto span = static_cast<std::size_t>(motions.stride);
-  ByDelay changes;
-  for (const std::size_t i : begins_of(instants, motions)) {
-    const PosePair begin = instants.at(i);
-    const auto [from_a, from_b] = speeds.at(i);
-    const auto [to_a, to_b] = speeds.at(i + span);
-    changes.a.push_back(rotation_of(begin.a).transpose() * (to_a - from_a));
-    changes.b.push_back(rotation_of(begin.b).transpose() * (to_b - from_b));
+/// The instant nearest to a time [s].
+std::size_t nearest(const Instants& instants, double time) {
+  std::size_t from = 0, to = instants.size();  // the first one after it is in [from, to]
+  while (from < to) {
+    const std::size_t middle = from + (to - from) / 2;
+    if (instants.time(middle) > time)
+      to = middle;
+    else
+      from = middle + 1;
   }
-  return changes;
+  if (from == 0) return 0;
+  if (from == instants.size()) return from - 1;
+  return instants.time(from) - time < time - instants.time(from - 1) ? from : from - 1;
 }
 
-/// The motions with the positions of one stream taken `delay` later.
-Motions later(const Motions& given, const Changes& changes, Side side, double delay) {
+/// What a delay adds to the translation of each motion, in the frame of its begin: [m], and what a second
+/// more of it adds [m/s].
+struct OfDelay {
+  Changes added, of_a_second;
+};
+
+/// The positions at a later time are those of the instant nearest to it, moved on by its speed: over half a
+/// second a person's speed is another one. Positions between two rows would be their mean, which has less
+/// noise and fits better for that alone.
+OfDelay of_delay(const Instants& instants, const Motions& motions, const std::vector<std::size_t>& begins,
+                 Side side, double delay, const LatePositionsOptions& late) {
+  const Speeds speeds(instants, late);
+  const auto span = static_cast<std::size_t>(motions.stride);
+  const auto moved = [&](std::size_t i) {
+    const double time = instants.time(i) + delay;
+    const std::size_t near = nearest(instants, time);
+    const Vector3d speed = speeds.at(near, side);
+    Vector3d added = (time - instants.time(near)) * speed;
+    if (near != i) added += speeds.position(near, side) - speeds.position(i, side);
+    return std::pair(added, speed);
+  };
+  OfDelay result;
+  for (const std::size_t i : begins) {
+    const auto [from, speed_from] = moved(i);
+    const auto [to, speed_to] = moved(i + span);
+    const PosePair begin = instants.at(i);
+    const Eigen::Matrix3d into_begin = rotation_of(side == Side::a ? begin.a : begin.b).transpose();
+    result.added.emplace_back(into_begin * (to - from));
+    result.of_a_second.emplace_back(into_begin * (speed_to - speed_from));
+  }
+  return result;
+}
+
+/// The motions with the positions of one stream taken at other times.
+Motions later(const Motions& given, const Changes& added, Side side) {
   Motions motions = given;
   for (std::size_t i = 0; i < motions.all.size(); ++i) {
     Motion& motion = motions.all[i];
     set_motion(motion, side, to_pose(side == Side::a ? motion.a : motion.b).rotation,
-               (side == Side::a ? motion.t_a : motion.t_b) + delay * changes[i]);
+               (side == Side::a ? motion.t_a : motion.t_b) + added[i]);
   }
   return motions;
 }
 
-LatePositions fitted(const Explained& given, const Changes& changes, Side side,
-                     const DiagnosisOptions& options) {
+LatePositions fitted(const Instants& instants, const Explained& given, const std::vector<std::size_t>& begins,
+                     Side side, const DiagnosisOptions& options, const LatePositionsOptions& tuning) {
   LatePositions late{side, 0, given, {}};
+  OfDelay here = of_delay(instants, given.motions, begins, side, 0, tuning);
   for (int round = 0; round < options.fit.rounds; ++round) {
-    late.delay += best_numbers<1>(late.explained, changes, side)[0];
-    late.explained.motions = later(given.motions, changes, side, late.delay);
+    late.delay += best_numbers<1>(late.explained, here.of_a_second, side)[0];
+    if (!std::isfinite(late.delay)) break;
+    here = of_delay(instants, given.motions, begins, side, late.delay, tuning);
+    late.explained.motions = later(given.motions, here.added, side);
     late.explained.fit = robust_fit(late.explained.motions, options.fit);
   }
   late.comparison = compare(given, late.explained);
@@ -121,10 +155,10 @@ std::optional<LateOfEither> best_late_positions(const Instants& instants, const 
                                                 const DiagnosisOptions& options, std::optional<Side> behind,
                                                 const LatePositionsOptions& late) {
   if (instants.size() < 3 || given.motions.all.size() < options.motions.least) return std::nullopt;
-  const ByDelay changes = changes_of(instants, given.motions, late);
+  const std::vector<std::size_t> begins = begins_of(instants, given.motions);
   std::optional<LatePositions> best, other;
   for (const Side side : {Side::b, Side::a}) {
-    LatePositions here = fitted(given, changes.of(side), side, options);
+    LatePositions here = fitted(instants, given, begins, side, options, late);
     if (!std::isfinite(here.delay)) continue;
     (best ? other : best) = std::move(here);
   }
