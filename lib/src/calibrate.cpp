@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "calibration/inverted_streams.hpp"
 #include "calibration/no_motions.hpp"
 #include "calibration/scale_verdict.hpp"
 #include "calibration/steps.hpp"
@@ -286,7 +287,12 @@ Calibration calibrate(const Trajectory& a, const Trajectory& b, const Calibratio
   if (!as_read(options.read_a) || !as_read(options.read_b)) {
     CalibrationOptions rest = options;
     rest.read_a = rest.read_b = {};
-    return calibrate(reread(a, options.read_a), reread(b, options.read_b), rest, beside);
+    const Trajectory read_a = reread(a, options.read_a), read_b = reread(b, options.read_b);
+    Calibration result = calibrate(read_a, read_b, rest, beside);
+    // a scale that is looked for is another question, and its lengths are not those of these streams
+    if (options.read_a.invert && options.read_b.invert && !with_scale(options))
+      detail::doubt_inversion_of_both(read_a, read_b, rest, result);
+    return result;
   }
   if (with_scale(options)) return calibrate_scaled(a, b, options, beside);
   return calibrate_streams(a, b, options, beside, std::nullopt);

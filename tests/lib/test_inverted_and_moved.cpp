@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "../support/arm_samples.hpp"
+#include "../support/bounded_drive.hpp"
 #include "../support/findings.hpp"
 #include "../support/mistakes.hpp"
 #include "../support/random_motion.hpp"
@@ -52,6 +53,39 @@ TEST(InvertedAndMoved, AKnockIsNamedWhereBothStreamsAreInvertedByMistake) {
     EXPECT_TRUE(usual == nullptr || usual->message.find("the mounting changed") == std::string::npos)
         << usual->message;
   }
+}
+
+/// Far from the origin of its world an inverted pose moves by its turns times the distance: what contradicts
+/// is a small part of that, and streams that were inverted in vain agree.
+TEST(InvertedAndMoved, StreamsThatOptionsInvertInVainAreDoubtful) {
+  testing::Streams right = testing::bounded_drive();
+  right.b = testing::with_late_positions(right.b, 3);
+  const DualQuaternion far = to_dual_quaternion(Pose{{1, 0, 0, 0}, {60, 40, 0}}),
+                       far_b = to_dual_quaternion(Pose{{1, 0, 0, 0}, {-50, 30, 2}});
+  for (StampedPose& pose : right.a) pose.pose = far * pose.pose;
+  for (StampedPose& pose : right.b) pose.pose = far_b * pose.pose;
+  CalibrationOptions inverted;
+  inverted.read_a.invert = inverted.read_b.invert = true;
+  const Calibration wrong = calibrate(right.a, right.b, inverted);
+  EXPECT_GE(wrong.verdict, Verdict::doubtful) << wrong.reason;
+  const Finding* finding = find(wrong, "inverted_both");
+  ASSERT_NE(finding, nullptr) << wrong.reason;
+  if (!finding->certain) {
+    ASSERT_TRUE(finding->value);
+    EXPECT_GT(*finding->value, 1.5);
+  }
+}
+
+/// Right with the options: they are what such files need.
+TEST(InvertedAndMoved, StreamsThatOptionsInvertRightlyAreGood) {
+  testing::Streams files = testing::bounded_drive();
+  const Verdict before = calibrate(files.a, files.b).verdict;
+  files.a = testing::inverted(files.a);
+  files.b = testing::inverted(files.b);
+  CalibrationOptions inverted;
+  inverted.read_a.invert = inverted.read_b.invert = true;
+  const Calibration calibration = calibrate(files.a, files.b, inverted);
+  EXPECT_EQ(calibration.verdict, before) << calibration.reason;
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "diagnosis/explanations/contents/forward.hpp"
 #include "diagnosis/streams/pace.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 
 namespace egocal::detail {
 
@@ -85,6 +86,28 @@ std::optional<Finding> both_inverted(const Evidence& evidence, const DiagnosisOp
     return std::nullopt;
   Finding finding = finding_of(both, comparison, trace || noise_says_inverted);
   if (!noise_says_inverted) finding.improvement = comparison.ratio;
+  return finding;
+}
+
+std::optional<Finding> inverted_in_vain(const Evidence& evidence, const DiagnosisOptions& options,
+                                        const InvertedInVainOptions& tuning) {
+  PoseReading inverted;
+  inverted.invert = true;
+  const Explanation back = explained(evidence, "inverted_both", inverted, inverted, options);
+  const Motions &here = evidence.given.explained.motions, &there = back.explained.motions;
+  if (there.all.empty() || !longer_way(here, there)) return std::nullopt;
+  const Heading of_here = heading(here), of_there = heading(there);
+  if (forward(of_here, options.heading) && !forward(of_there, options.heading)) return std::nullopt;
+  if (loss_in_metres(evidence.given.explained, back.explained) > tuning.most_loss) return std::nullopt;
+  const double times = std::sqrt(of_here.way_a * of_here.way_b / (of_there.way_a * of_there.way_b));
+  if (!(times > tuning.least_times)) return std::nullopt;
+  Finding finding = finding_of(back, compare(evidence.given.explained, back.explained), false);
+  finding = worded_reading(std::move(finding), inverted, inverted);
+  finding.value = times;
+  say(finding, finding.words.claim, finding.words.cure,
+      format(", the answer is another one: inverted, both sensors travel %.2g times as far, and hardly agree "
+             "better in metres.",
+             times));
   return finding;
 }
 
