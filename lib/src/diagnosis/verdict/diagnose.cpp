@@ -25,6 +25,7 @@
 #include "diagnosis/motions/answer_change.hpp"
 #include "diagnosis/motions/fit.hpp"
 #include "diagnosis/motions/standing_still.hpp"
+#include "diagnosis/streams/chord_copy.hpp"
 #include "diagnosis/streams/copied_positions.hpp"
 #include "diagnosis/streams/copied_rotations.hpp"
 #include "diagnosis/streams/interpolated_stream.hpp"
@@ -120,6 +121,11 @@ void add_same_stream(const Evidence& evidence, const Answered& answered, const D
   if (std::any_of(result.findings.begin(), result.findings.end(),
                   [&](const Finding& one) { return certain_of_either(one) && !filled(one); }))
     return;
+  if (std::optional<Finding> copy =
+          chord_copy(evidence.streams.a, evidence.streams.b, evidence.clock, evidence.streams.max_gap)) {
+    found.assign(1, *std::move(copy));
+    std::erase_if(result.findings, filled);
+  }
   if (found.empty())
     if (std::optional<Finding> rotations = copied_rotations(evidence.streams.a, evidence.streams.b,
                                                             evidence.clock, evidence.streams.max_gap))
