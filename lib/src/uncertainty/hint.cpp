@@ -10,7 +10,8 @@ namespace {
 
 std::string text_of(const Eigen::Vector3d& v) {
   char text[64];
-  std::snprintf(text, sizeof text, "(%.2f, %.2f, %.2f)", v.x(), v.y(), v.z());
+  const Eigen::Vector3d shown = ((100 * v).array().round() / 100 + 0.0).matrix();  // no "-0.00"
+  std::snprintf(text, sizeof text, "(%.2f, %.2f, %.2f)", shown.x(), shown.y(), shown.z());
   return text;
 }
 

@@ -35,9 +35,17 @@ const char* optimality_text(Optimality optimality) {
   return "UNDECIDED: too imprecise to prove or disprove";
 }
 
+/// As it is printed with so many decimals: nobody reads "-0.00000" as zero.
+Eigen::Vector3d without_negative_zeros(Eigen::Vector3d values, int decimals) {
+  const double least = 0.5 * std::pow(10.0, -decimals);
+  for (double& value : values)
+    if (std::abs(value) < least) value = 0;
+  return values;
+}
+
 std::string pose_text(const char* label, const Pose& T, const std::string& unit) {
-  const Eigen::Vector3d& t = T.translation;
-  const Eigen::Vector3d angles = roll_pitch_yaw(T.rotation) * degrees;
+  const Eigen::Vector3d t = without_negative_zeros(T.translation, 6);
+  const Eigen::Vector3d angles = without_negative_zeros(roll_pitch_yaw(T.rotation) * degrees, 5);
   return fmt::format(
       "{}\n  {:<30} {:12.6f} {:12.6f} {:12.6f}\n"
       "  quaternion w x y z             {:12.9f} {:12.9f} {:12.9f} {:12.9f}\n"
