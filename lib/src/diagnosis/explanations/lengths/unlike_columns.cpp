@@ -120,6 +120,19 @@ Finding worded_columns(const Stretched& found, const UnlikeColumnsOptions& colum
   finding.code = of_columns ? std::string("axes_") + which : "odometry";
   finding.improvement = std::exp(found.gain_over_given);
   finding.T_a_b = to_pose(found.explained.fit.T);
+  const auto from = [&](int k) {
+    return format("%s%c", found.factors[k] < 0 ? "-" : "", column(static_cast<std::size_t>(k)));
+  };
+  if (found.unlike < columns.certain && finding.certain) {
+    // factors of about one are no units
+    say(finding, format("The columns of the position of %s are exchanged", mark(which)),
+        format("Write positions and rotations of %s in the same axes.", mark(which)),
+        format(
+            ": x from %s, y from %s and z from %s suit its rotations, the squared residuals are %.3g times "
+            "smaller then.",
+            from(0).c_str(), from(1).c_str(), from(2).c_str(), finding.improvement));
+    return finding;
+  }
   const std::string evidence = format(
       ": x as %.4g %c, y as %.4g %c and z as %.4g %c suit its rotations, the squared residuals are "
       "%.3g times smaller then.",
