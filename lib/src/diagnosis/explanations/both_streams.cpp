@@ -7,11 +7,13 @@
 #include <cstddef>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
 #include "diagnosis/explanations/contents/forward.hpp"
 #include "diagnosis/streams/pace.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/diagnosis/certain_of_either.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 
 namespace egocal::detail {
@@ -109,6 +111,24 @@ std::optional<Finding> inverted_in_vain(const Evidence& evidence, const Diagnosi
              "better in metres.",
              times));
   return finding;
+}
+
+void drop_unlikely_inversion(const Evidence& evidence, const DiagnosisOptions& options,
+                             std::vector<Finding>& findings) {
+  const auto unlikely = [](const Finding& one) { return one.code == "inverted_both" && !one.certain; };
+  const auto of_one_stream = [](const Finding& one) {
+    return certain_of_either(one) &&
+           (one.code.starts_with("late_positions_") || one.code == "axes_a" || one.code == "axes_b");
+  };
+  if (std::none_of(findings.begin(), findings.end(), unlikely) ||
+      std::none_of(findings.begin(), findings.end(), of_one_stream))
+    return;
+  PoseReading inverted;
+  inverted.invert = true;
+  if (longer_way(motions_of(evidence.instants, inverted, inverted, evidence.stride, options.motions.most,
+                            options.motions),
+                 evidence.given.explained.motions))
+    std::erase_if(findings, unlikely);
 }
 
 std::optional<Finding> both_orders(const Evidence& evidence, const DiagnosisOptions& options) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "diagnosis/explanations/explanations.hpp"
 
@@ -37,6 +38,12 @@ struct InvertedInVainOptions {
 /// known. Empty where the inverted ones travel forward alone, or agree clearly better in metres.
 std::optional<Finding> inverted_in_vain(const Evidence& evidence, const DiagnosisOptions& options,
                                         const InvertedInVainOptions& tuning = {});
+
+/// Removes an uncertain inverted_both beside a certain mistake of positions or axes, where both sensors would
+/// travel further under that reading: its option would be the only one that is offered, and what contradicts
+/// is a smaller part of longer motions.
+void drop_unlikely_inversion(const Evidence& evidence, const DiagnosisOptions& options,
+                             std::vector<Finding>& findings);
 
 /// Finding quaternion_order_both: the same wrong order in both streams. It is nearly consistent if both
 /// sensors move in nearly the same way. Short motions, of which there are many, show it.

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "diagnosis/explanations/both_streams.hpp"
 #include "diagnosis/explanations/contents/forward.hpp"
 #include "diagnosis/explanations/lengths/lengths_in_turns.hpp"
 #include "diagnosis/explanations/planes.hpp"
@@ -250,6 +251,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
     look_further(pairing, evidence, answered, result.fit, options, wrong_stream, misfit, result.findings);
   if (pairing.mode != Mode::planar) name_clock_step(evidence, result.fit, options, result.findings);
   add_what_is_beside(foreseen, options, wrong_stream, answered, result);
+  drop_unlikely_inversion(evidence, options, result.findings);
   add_possible_changes(answered, result);
   misfit = where_known(misfit, moving, answered, best, result.findings);
   result.findings.insert(result.findings.begin(), foreseen.frozen.begin(), foreseen.frozen.end());
