@@ -26,15 +26,11 @@
 #include "diagnosis/motions/answer_change.hpp"
 #include "diagnosis/motions/fit.hpp"
 #include "diagnosis/motions/standing_still.hpp"
-#include "diagnosis/streams/chord_copy.hpp"
-#include "diagnosis/streams/copied_positions.hpp"
-#include "diagnosis/streams/copied_rotations.hpp"
 #include "diagnosis/streams/interpolated_stream.hpp"
 #include "diagnosis/streams/missing_in_both.hpp"
 #include "diagnosis/streams/mixed_frames.hpp"
 #include "diagnosis/streams/pace.hpp"
 #include "diagnosis/streams/stamps_in_bursts.hpp"
-#include "diagnosis/streams/stream_check.hpp"
 #include "diagnosis/streams/turning_alike.hpp"
 #include "diagnosis/streams/two_dimensions.hpp"
 #include "diagnosis/verdict/besides.hpp"
@@ -44,6 +40,7 @@
 #include "diagnosis/verdict/known_directions.hpp"
 #include "diagnosis/verdict/look_further.hpp"
 #include "diagnosis/verdict/possible_changes.hpp"
+#include "diagnosis/verdict/same_stream.hpp"
 #include "diagnosis/verdict/small_scale.hpp"
 #include "diagnosis/verdict/timing.hpp"
 #include "egocal/diagnosis/certain_of_either.hpp"
@@ -99,51 +96,6 @@ void add_faults_of_poses(const Evidence& evidence, const Answered& answered, con
   }
 }
 
-/// That one stream was made from the other explains an answer that is the identity, too.
-void add_same_stream(const Evidence& evidence, const Answered& answered, const DiagnosisOptions& options,
-                     Diagnosis& result) {
-  StreamCheckOptions checks;
-  checks.metres = options.unit == LengthUnit::metres;
-  if (options.unit == LengthUnit::unknown) {
-    const double of_a_metre = options.tolerance_translation / DiagnosisOptions().tolerance_translation;
-    checks.close *= of_a_metre;
-    checks.known_translation *= of_a_metre;
-  }
-  const auto filled = [](const Finding& one) { return one.code.starts_with("filled_"); };
-  std::vector<Finding> found = made_from_each_other(result.fit);
-  if (found.empty())
-    if (std::optional<Finding> positions =
-            copied_positions(evidence.instants, evidence.given.explained.motions)) {
-      // turned rotations beside positions of another sensor are its effect
-      std::erase_if(result.findings, [](const Finding& one) { return one.code.starts_with("axes_"); });
-      if (!has(result.findings, "same_stream")) result.findings.push_back(*std::move(positions));
-      return;
-    }
-  if (std::any_of(result.findings.begin(), result.findings.end(),
-                  [&](const Finding& one) { return certain_of_either(one) && !filled(one); }))
-    return;
-  if (std::optional<Finding> copy =
-          chord_copy(evidence.streams.a, evidence.streams.b, evidence.clock, evidence.streams.max_gap)) {
-    found.assign(1, *std::move(copy));
-    std::erase_if(result.findings, filled);
-  }
-  if (found.empty())
-    if (std::optional<Finding> rotations = copied_rotations(evidence.streams.a, evidence.streams.b,
-                                                            evidence.clock, evidence.streams.max_gap))
-      found.push_back(*std::move(rotations));
-  if (found.empty())
-    if (std::optional<Finding> rotations =
-            exactly_copied_rotations(result.fit, evidence.given.explained.motions)) {
-      found.push_back(*std::move(rotations));
-      // where a map corrects an odometry, the odometry goes straight on
-      std::erase_if(result.findings, filled);
-    }
-  if (found.empty() && std::none_of(result.findings.begin(), result.findings.end(), filled))
-    found = in_one_frame(answered, checks);
-  if (!has(result.findings, "same_stream"))
-    result.findings.insert(result.findings.end(), found.begin(), found.end());
-}
-
 /// A speed that no vehicle has, unless the streams are read otherwise: the pace is that of inverse poses
 /// then.
 void add_impossible_pace(const Evidence& evidence, const DiagnosisOptions& options,
@@ -193,7 +145,7 @@ void add_what_is_beside(const Foreseen& foreseen, const DiagnosisOptions& option
   const Evidence& evidence = foreseen.evidence;
   const PairingOptions& pairing = foreseen.pairing;
   name_wrong_scale(evidence, pairing, answered, options, result.findings);
-  add_same_stream(evidence, answered, options, result);
+  name_same_stream(evidence, answered, options, result);
   add_impossible_pace(evidence, options, result.findings);
   name_lengths_in_turns(evidence, answered, options, result.findings);
   look_at_times(foreseen, answered, result);

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/verdict/same_stream.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/motions/fit.hpp"
+#include "diagnosis/streams/chord_copy.hpp"
+#include "diagnosis/streams/copied_positions.hpp"
+#include "diagnosis/streams/copied_rotations.hpp"
+#include "diagnosis/streams/stream_check.hpp"
+#include "egocal/diagnosis/certain_of_either.hpp"
+
+namespace egocal::detail {
+
+namespace {
+
+bool filled(const Finding& finding) {
+  return finding.code.starts_with("filled_");
+}
+
+bool turned_axes(const Finding& finding) {
+  return finding.code.starts_with("axes_");
+}
+
+StreamCheckOptions checks_of(const DiagnosisOptions& options) {
+  StreamCheckOptions checks;
+  checks.metres = options.unit == LengthUnit::metres;
+  if (options.unit == LengthUnit::unknown) {
+    const double of_a_metre = options.tolerance_translation / DiagnosisOptions().tolerance_translation;
+    checks.close *= of_a_metre;
+    checks.known_translation *= of_a_metre;
+  }
+  return checks;
+}
+
+/// One stream was made from the other as a whole, or its rotations were.
+std::optional<Finding> made_stream(const Evidence& evidence, const Fit& fit, std::vector<Finding>& findings) {
+  const Streams& streams = evidence.streams;
+  if (std::optional<Finding> copy = chord_copy(streams.a, streams.b, evidence.clock, streams.max_gap)) {
+    std::erase_if(findings, filled);
+    return copy;
+  }
+  if (std::vector<Finding> made = made_from_each_other(fit); !made.empty()) return std::move(made.front());
+  if (std::optional<Finding> rotations =
+          copied_rotations(streams.a, streams.b, evidence.clock, streams.max_gap))
+    return rotations;
+  std::optional<Finding> rotations = exactly_copied_rotations(fit, evidence.given.explained.motions);
+  // where a map corrects an odometry, the odometry goes straight on
+  if (rotations) std::erase_if(findings, filled);
+  return rotations;
+}
+
+}  // namespace
+
+void name_same_stream(const Evidence& evidence, const Answered& answered, const DiagnosisOptions& options,
+                      Diagnosis& result) {
+  std::vector<Finding>& findings = result.findings;
+  if (std::any_of(findings.begin(), findings.end(),
+                  [](const Finding& one) { return one.code == "same_stream"; }))
+    return;
+  const auto explains = [](const Finding& one) { return certain_of_either(one) && !filled(one); };
+  const auto explains_otherwise = [&](const Finding& one) { return explains(one) && !turned_axes(one); };
+  if (std::any_of(findings.begin(), findings.end(), explains_otherwise)) return;
+  if (made_from_each_other(result.fit).empty())
+    if (std::optional<Finding> positions =
+            copied_positions(evidence.instants, evidence.given.explained.motions)) {
+      std::erase_if(findings, turned_axes);
+      findings.push_back(*std::move(positions));
+      return;
+    }
+  if (std::any_of(findings.begin(), findings.end(), explains)) return;
+  if (std::optional<Finding> made = made_stream(evidence, result.fit, findings)) {
+    findings.push_back(*std::move(made));
+    return;
+  }
+  if (std::any_of(findings.begin(), findings.end(), filled)) return;
+  // that one stream was made from the other explains an answer that is the identity, too
+  for (Finding& finding : in_one_frame(answered, checks_of(options))) findings.push_back(std::move(finding));
+}
+
+}  // namespace egocal::detail
