@@ -14,6 +14,7 @@
 #include "egocal/version.hpp"
 #include "figures/plot.hpp"
 #include "offline/common/backing_of.hpp"
+#include "offline/printing/decimals.hpp"
 #include "offline/printing/report.hpp"
 #include "report/pictures.hpp"
 #include "report/trust_page.hpp"
@@ -56,10 +57,11 @@ std::string matrix_text(const Pose& T) {
 }
 
 std::string transform(const std::string& title, const Pose& given, const std::string& unit) {
-  const Pose T = with_positive_scalar(given);
+  Pose T = with_positive_scalar(given);
+  T.translation = without_negative_zeros(T.translation, 6);
   const Eigen::Vector3d& t = T.translation;
   const auto& q = T.rotation;
-  const Eigen::Vector3d angles = roll_pitch_yaw(Eigen::Quaterniond(q)) * degrees;
+  const Eigen::Vector3d angles = without_negative_zeros(roll_pitch_yaw(Eigen::Quaterniond(q)) * degrees, 5);
   std::string table = "<table class='wide'>\n";
   table += row("translation x y z [" + unit + "]",
                fmt::format("<code>{:.6f} {:.6f} {:.6f}</code>", t.x(), t.y(), t.z()));

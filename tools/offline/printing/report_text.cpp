@@ -14,6 +14,7 @@
 #include "egocal/in_words.hpp"
 #include "offline/common/backing_of.hpp"
 #include "offline/pair/unit.hpp"
+#include "offline/printing/decimals.hpp"
 #include "offline/printing/report.hpp"
 #include "offline/printing/samples.hpp"
 #include "offline/printing/scale.hpp"
@@ -33,14 +34,6 @@ const char* optimality_text(Optimality optimality) {
       break;
   }
   return "UNDECIDED: too imprecise to prove or disprove";
-}
-
-/// As it is printed with so many decimals: nobody reads "-0.00000" as zero.
-Eigen::Vector3d without_negative_zeros(Eigen::Vector3d values, int decimals) {
-  const double least = 0.5 * std::pow(10.0, -decimals);
-  for (double& value : values)
-    if (std::abs(value) < least) value = 0;
-  return values;
 }
 
 std::string pose_text(const char* label, const Pose& T, const std::string& unit) {
