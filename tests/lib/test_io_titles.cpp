@@ -72,6 +72,28 @@ TEST_F(Tables, ColumnsThatAreNamedByHandNeedNoHeader) {
   EXPECT_THAT(read(content, options).notes, Contains(HasSubstr("lines 1 to 7 are not read")));
 }
 
+/// Rows that begin with a word, or with an empty field, are rows.
+TEST_F(Tables, RowsWithOtherColumnsAreNotSkipped) {
+  ReadOptions options;
+  options.columns = "-,t,x,y,z,qx,qy,qz,qw";
+  const std::string pose = ",0,0,0.7071068,0.7071068\n";
+  expect_two_poses(",1000000000.0,1,2,3" + pose + "turn,1000000000.1,4,5,6" + pose, options);
+  expect_two_poses("go,1000000000.0,1,2,3" + pose + "7,1000000000.1,4,5,6" + pose, options);
+  options.columns = "t,x,y,z,qx,qy,qz,qw,-,-,-";
+  const std::string words = ",0,0,0.7071068,0.7071068,a,b,c\n";
+  expect_two_poses("1000000000.0,1,2,3" + words + "1000000000.1,4,5,6" + words, options);
+}
+
+/// Tracking that begins late: times without poses.
+TEST_F(Tables, PosesThatAreLostAtTheBeginningAreNoNames) {
+  const std::string lost = "999999999.8,,,,,,,\n999999999.9,,,,,,,\n";
+  const TrajectoryReading reading =
+      read("t,x,y,z,qx,qy,qz,qw\n" + lost + "1000000000.0,1,2,3,0,0,0,1\n1000000000.1,1,2,3,0,0,0,1\n");
+  EXPECT_EQ(reading.trajectory.size(), 2u);
+  EXPECT_EQ(reading.trajectory.front().time_us, 1'000'000'000'000'000);
+  EXPECT_EQ(reading.losses.refused, 2u);
+}
+
 /// A header with a row that makes no sense below it.
 TEST_F(Tables, ARowOfWordsIsStillAnError) {
   expect_error("t,x,y,z,qx,qy,qz,qw\na,b,c,d,e,f,g,h\n1,1,2,3,0,0,0,1\n", ":2:");
@@ -92,6 +114,10 @@ TEST_F(Tables, YamlIsNoTable) {
        {"%YAML:1.0\n---\nT: !!opencv-matrix\n", "---\n- a: 1\n", "header:\n  stamp:\n    sec: 1\n",
         "- robot:\n    x: 1\n", "eye_on_hand: true\nparameters:\n  a: 1\n"})
     expect_error(text, "is YAML, not a trajectory");
+  const std::string rows =
+      "1000000000.0 1 2 3 0 0 0.7071068 0.7071068\n1000000000.1 4 5 6 0 0 0.7071068 0.7071068\n";
+  expect_two_poses("#units: m\n#frame: world\n" + rows);
+  expect_two_poses("# t: s\n" + rows);
 }
 
 }  // namespace

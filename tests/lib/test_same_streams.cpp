@@ -55,6 +55,28 @@ TEST(SameStreams, PositionsOfOneSensorAreNamed) {
   }
 }
 
+/// Two receivers on one vehicle travel the same distances on straight lines, to the digits of their files.
+TEST(SameStreams, StraightLinesAreNoSignOfOneReceiver) {
+  Trajectory a, b;
+  const Pose mounting{Rotation(rotation_exp({0, 0, 0.2})), {0.9, 0.3, 0.1}};
+  const auto in_centimetres = [](const Pose& pose) {
+    return Pose{pose.rotation, (pose.translation * 100).array().round() / 100};
+  };
+  double x = 0, y = 0, heading = 0;
+  for (int i = 0; i < 1200; ++i) {
+    const bool turns = i % 120 >= 100;  // 10 s straight on, then a quarter turn
+    heading += turns ? 0.0785 : 0;
+    x += 0.1 * std::cos(heading);
+    y += 0.1 * std::sin(heading);
+    const Pose body{Rotation(rotation_exp({0.05 * std::sin(0.01 * i), 0.05 * std::sin(0.013 * i), heading})),
+                    {x, y, 0}};
+    a.push_back({100'000 * i, to_dual_quaternion(in_centimetres(body))});
+    b.push_back({100'000 * i, to_dual_quaternion(in_centimetres(body * mounting))});
+  }
+  const Calibration calibration = calibrate(a, b);
+  EXPECT_EQ(find(calibration, "same_stream"), nullptr) << calibration.reason;
+}
+
 /// Poses of which one half was never filled in, in both streams: the motions agree, and hold nothing of it.
 TEST(SameStreams, AHalfThatIsMissingInBothIsNotKnown) {
   const testing::Streams right = drive(Terrain::rough);

@@ -10,7 +10,6 @@
 #include "diagnosis/explanations/both_streams.hpp"
 #include "diagnosis/explanations/common_mistakes.hpp"
 #include "diagnosis/explanations/lengths/scale.hpp"
-#include "diagnosis/explanations/lengths/scale_in_parts.hpp"
 #include "diagnosis/motions/axes.hpp"
 #include "diagnosis/motions/robust_fit.hpp"
 #include "diagnosis/mount/large_move.hpp"
@@ -55,8 +54,7 @@ Finding scale_finding(const Explanation& explanation, const Comparison& comparis
 Finding shown_by_few(const Evidence& evidence, const Comparison& comparison, double sigmas,
                      const DiagnosisOptions& options) {
   const Explanation& scaled = evidence.scaled;
-  Finding finding =
-      scale_finding(scaled, comparison, same_scale_in_parts(evidence, scaled), evidence, options);
+  Finding finding = scale_finding(scaled, comparison, true, evidence, options);
   if (finding.code == "scale" && comparison.gain < options.gain)
     say(finding, format("The lengths of {b} times %.4g fit those of {a}", scaled.scale), finding.words.cure,
         format(": few motions show it, but by %.0f standard deviations.", sigmas));
@@ -264,9 +262,7 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
   if (best.scale != 1) {
     Explanation explanation = best;
     explanation.explained.fit.T = final.fit.T;
-    const bool alone = best.code.empty() && clocks.empty();
-    findings.push_back(scale_finding(
-        explanation, overall, certain && (!alone || same_scale_in_parts(evidence, best)), evidence, options));
+    findings.push_back(scale_finding(explanation, overall, certain, evidence, options));
   }
   if (!clocks.empty()) {
     const Explanation& clock = clocks.back();

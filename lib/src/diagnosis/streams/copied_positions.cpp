@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "diagnosis/motions/reading.hpp"
+#include "egocal/geometry/dual_quaternion.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal::detail {
@@ -33,20 +34,23 @@ Finding positions_of_one() {
 
 std::optional<Finding> copied_positions(const Instants& instants, const Motions& motions,
                                         const CopiedPositionsOptions& options) {
-  if (!(motions.rotation > options.turning)) return std::nullopt;
-  std::vector<double> distances, differences;
+  const auto stride = static_cast<std::size_t>(std::max(1, motions.stride));
   const std::size_t each = std::max<std::size_t>(1, instants.size() / options.looked_at);
-  for (std::size_t i = 0; i + each < instants.size(); i += each) {
-    if (instants.between_poses(i) || instants.between_poses(i + each)) continue;
-    const PosePair from = instants.at(i), to = instants.at(i + each);
+  std::vector<double> distances, differences;
+  for (std::size_t i = 0; i + stride < instants.size(); i += each) {
+    if (instants.between_poses(i) || instants.between_poses(i + stride)) continue;
+    const PosePair from = instants.at(i), to = instants.at(i + stride);
+    if (rotation_angle(conjugate(from.a) * to.a) < options.turning) continue;
     const double of_a = (position_of(to.a) - position_of(from.a)).norm(),
                  of_b = (position_of(to.b) - position_of(from.b)).norm();
     distances.push_back(of_a);
     differences.push_back(std::abs(of_a - of_b));
   }
   if (distances.size() < options.fewest) return std::nullopt;
-  const double distance = median(std::move(distances));
-  if (!(distance > 0) || !(median(std::move(differences)) <= options.of_distance * distance))
+  const double least = options.of_distance * median(std::move(distances));
+  const auto agree = std::count_if(differences.begin(), differences.end(),
+                                   [least](double difference) { return difference <= least; });
+  if (!(least > 0) || static_cast<double>(agree) < options.part * static_cast<double>(differences.size()))
     return std::nullopt;
   return positions_of_one();
 }

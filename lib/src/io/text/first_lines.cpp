@@ -14,22 +14,39 @@ namespace {
 
 constexpr std::size_t sniffed_bytes = 64 << 10;  // a limit: some hundred rows show the layout
 
-/// "- key: value" or "key:", after any blanks.
-bool is_yaml_line(std::string_view line) {
-  line.remove_prefix(std::min(line.find_first_not_of(" -"), line.size()));
-  const std::size_t key = line.find_first_of(": \t,;");
-  return key != std::string_view::npos && key > 0 && line[key] == ':' &&
-         (key + 1 == line.size() || line[key + 1] == ' ' || line[key + 1] == '\r');
+enum class YamlLine { no, value, nested };
+
+/// "key: value"; nested: "- key: value", or "key:" alone. After any blanks.
+YamlLine yaml_line(std::string_view line) {
+  while (line.ends_with('\r') || line.ends_with(' ')) line.remove_suffix(1);
+  const std::size_t begin = std::min(line.find_first_not_of(" -"), line.size());
+  const bool item = line.substr(0, begin).find('-') != std::string_view::npos;
+  line.remove_prefix(begin);
+  const auto of_key = [](char c) {
+    return c == '_' || (c >= '0' && c <= '9') || (lower_case(c) >= 'a' && lower_case(c) <= 'z');
+  };
+  const auto key = std::find_if_not(line.begin(), line.end(), of_key);
+  if (key == line.begin() || key == line.end() || *key != ':') return YamlLine::no;
+  if (key + 1 == line.end()) return YamlLine::nested;
+  return key[1] != ' ' ? YamlLine::no : item ? YamlLine::nested : YamlLine::value;
 }
 
+/// Two lines with keys, one of them nested: lines about a recording before its table are not.
 bool is_yaml(std::string_view text) {
   if (text.starts_with("%YAML") || text.starts_with("---\n")) return true;
-  for (int lines = 0; lines < 2; ++lines) {
+  bool nested = false;
+  for (int lines = 0; lines < 2;) {
     const std::size_t end = text.find('\n');
-    if (end == std::string_view::npos || !is_yaml_line(text.substr(0, end))) return false;
+    if (end == std::string_view::npos) return false;
+    const std::string_view line = text.substr(0, end);
     text.remove_prefix(end + 1);
+    if (line.starts_with('#')) continue;
+    const YamlLine kind = yaml_line(line);
+    if (kind == YamlLine::no) return false;
+    nested = nested || kind == YamlLine::nested;
+    ++lines;
   }
-  return true;
+  return nested;
 }
 
 /// JSON, XML, YAML, point clouds and pose graphs are text, but no tables.

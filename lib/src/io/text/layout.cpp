@@ -111,7 +111,7 @@ bool set_matrix(TextLayout& layout, const std::vector<std::string_view>& row) {
 /// Lines of titles become one header where they make sense, and are not read where --columns names the
 /// columns. Number of the last one; 0: there are none.
 long read_titles(TextLayout& layout, Sniffed& sniffed, const ReadOptions& options) {
-  const TitleLines titles = title_lines(sniffed, layout.separator);
+  const TitleLines titles = title_lines(sniffed, layout.separator, options.columns);
   if (titles.last == 0) return 0;
   std::vector<std::string_view> names;
   split(titles.names, layout.separator, names);

@@ -18,13 +18,28 @@ namespace {
 
 using Fields = std::vector<std::string_view>;
 
-/// Mostly numbers, from the first field on; a pose that was lost has empty fields, not words.
+bool any_number(std::string_view field) {
+  return is_number(field) || has_decimal_comma(field);
+}
+
+/// Mostly numbers, or nothing else: of a pose that was lost there may be a time alone.
 bool is_row(const Fields& fields) {
   const auto filled =
       std::count_if(fields.begin(), fields.end(), [](std::string_view field) { return !field.empty(); });
-  const auto any_number = [](std::string_view field) { return is_number(field) || has_decimal_comma(field); };
   const auto numbers = std::count_if(fields.begin(), fields.end(), any_number);
-  return numbers >= 2 && !fields.empty() && any_number(fields[0]) && 2 * numbers > filled;
+  return numbers > 0 && (numbers == filled || (numbers >= 2 && 2 * numbers > filled));
+}
+
+/// All columns that have names are there, and hold mostly numbers.
+bool is_row_of(const Fields& fields, std::size_t width, const Fields& names) {
+  if (width < names.size()) return false;
+  std::size_t filled = 0, numbers = 0;
+  for (std::size_t i = 0; i < std::min(names.size(), fields.size()); ++i) {
+    if (names[i].empty() || names[i] == "-" || fields[i].empty()) continue;
+    ++filled;
+    if (any_number(fields[i])) ++numbers;
+  }
+  return numbers > 0 && 2 * numbers > filled;
 }
 
 /// The unit behind the field "Length Units", in brackets as names of columns have it.
@@ -45,28 +60,31 @@ bool is_length(const std::string& name) {
 
 }  // namespace
 
-TitleLines title_lines(const Sniffed& sniffed, char separator) {
+TitleLines title_lines(const Sniffed& sniffed, char separator, const std::string& columns) {
   TitleLines titles;
+  Fields names_given;
+  if (!columns.empty()) split(columns, ',', names_given);
   std::vector<std::pair<long, Fields>> lines;
   Fields row;
   for (const Line& line : sniffed.data) {
     const std::size_t width = split(line.text, separator, row);
-    if (is_row(row)) break;
+    if (columns.empty() ? is_row(row) : is_row_of(row, width, names_given)) break;
     row.resize(width);
     lines.emplace_back(line.number, row);
   }
   if (lines.size() < 2 || lines.size() == sniffed.data.size()) return titles;
   titles.last = lines.back().first;
-  const std::size_t columns = lines.back().second.size();
-  if (columns < row.size() || columns < 3) return titles;
+  if (!columns.empty()) return titles;
+  const std::size_t count = lines.back().second.size();
+  if (count < row.size() || count < 3) return titles;
   std::string unit;
   for (const auto& [number, fields] : lines)
     if (unit.empty()) unit = unit_of_lengths(fields);
-  for (std::size_t i = 0; i < columns; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     std::string name;
     for (const auto& [number, fields] : lines)
       // what describes the whole recording has pairs of names and values, and another number of them
-      if (fields.size() == columns && !fields[i].empty())
+      if (fields.size() == count && !fields[i].empty())
         name += (name.empty() ? "" : " ") + std::string(fields[i]);
     std::replace(name.begin(), name.end(), separator, ' ');
     if (!unit.empty() && is_length(name)) name += unit;

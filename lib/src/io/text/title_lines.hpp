@@ -17,7 +17,8 @@ struct TitleLines {
   std::string names;  ///< of all columns, from all lines that have as many fields, between separators
 };
 
-TitleLines title_lines(const Sniffed& sniffed, char separator);
+/// columns: of the option; they tell what a row is.
+TitleLines title_lines(const Sniffed& sniffed, char separator, const std::string& columns);
 
 /// Without those lines, and with the names as the header where they are wanted.
 void replace_titles(Sniffed& sniffed, const TitleLines& titles, bool named);
