@@ -39,7 +39,6 @@
 #include "diagnosis/verdict/judge.hpp"
 #include "diagnosis/verdict/known_directions.hpp"
 #include "diagnosis/verdict/look_further.hpp"
-#include "diagnosis/verdict/possible_changes.hpp"
 #include "diagnosis/verdict/same_stream.hpp"
 #include "diagnosis/verdict/small_scale.hpp"
 #include "diagnosis/verdict/timing.hpp"
@@ -204,7 +203,6 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   if (pairing.mode != Mode::planar) name_clock_step(evidence, result.fit, options, result.findings);
   add_what_is_beside(foreseen, options, wrong_stream, answered, result);
   drop_unlikely_inversion(evidence, options, result.findings);
-  add_possible_changes(answered, result);
   misfit = where_known(misfit, moving, answered, best, result.findings);
   result.findings.insert(result.findings.begin(), foreseen.frozen.begin(), foreseen.frozen.end());
   if (level) result.findings.push_back(std::move(level->finding));

@@ -11,7 +11,6 @@
 #include "diagnosis/goal/goal.hpp"
 #include "diagnosis/verdict/far_off.hpp"
 #include "diagnosis/verdict/nominal.hpp"
-#include "diagnosis/verdict/possible_changes.hpp"
 #include "diagnosis/verdict/stability.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/certain_of_either.hpp"
@@ -194,25 +193,22 @@ bool moved_if_inverted(const Finding& finding) {
 /// unknown.
 bool casts_doubt(const Finding& finding) {
   if (moved_if_inverted(finding)) return true;
-  if (possible_change(finding)) return false;  // judged by itself (slight_move(), slight_scale_change())
   return finding.code != "inverted_both" && finding.code != "reversed_steps" && finding.code != "scale" &&
          finding.code != "clock_offset" && finding.code != "clock_drift";
 }
 
-/// A change of the mounting that may as well be noise that wanders: how far its answer is from this one is
-/// unknown of this one, and counts there (add_possible_changes()). A large one is no such noise. Where both
-/// streams may be read in another way, what seems to move a little is a sign that they are.
+/// A change of the mounting that may as well be noise that wanders, to an answer that this one is near: the
+/// two cannot be told apart, and it matters little which it is. Where both streams may be read in another
+/// way, what seems to move a little is a sign that they are.
 bool slight_move(const Finding& finding, double far, const std::vector<Finding>& findings) {
-  return finding.code == "mount_moved" && possible_change(finding) &&
-         far <= PossibleChangeOptions().farthest &&
+  return finding.code == "mount_moved" && !finding.certain && finding.T_a_b && far <= near &&
          std::none_of(findings.begin(), findings.end(),
                       [](const Finding& one) { return one.code.ends_with("_both"); });
 }
 
-/// A scale that changes by what noise that wanders may look like; likewise.
+/// A scale that changes by what noise that wanders may look like, to an answer that this one is near.
 bool slight_scale_change(const Finding& finding, double far) {
-  return finding.code == "scale_change" && possible_change(finding) &&
-         far <= PossibleChangeOptions().farthest;
+  return finding.code == "scale_change" && !finding.certain && finding.T_a_b && far <= near;
 }
 
 /// Another reading fits far better and has another answer. Which one it is may be open, not that the streams
