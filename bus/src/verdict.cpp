@@ -98,8 +98,8 @@ void set_observability(const Diagnosis& diagnosis, const Judged& judged, verdict
   for (std::size_t i = 0; i < 6; ++i) {
     message.observable[i] = judged.observability.observable[i];
     message.stddev[i] = judged.observability.stddev[i];
-    message.stddev_added[i] =
-        diagnosis.assumed[i] ? std::numeric_limits<double>::infinity() : diagnosis.timing_stddev[i];
+    message.stddev_added[i] = diagnosis.assumed[i] ? std::numeric_limits<double>::infinity()
+                                                   : finite_or_zero(diagnosis.timing_stddev[i]);
   }
 }
 

@@ -3,6 +3,8 @@
 // Both streams inverted by mistake hide that a mounting changed.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "../support/arm_samples.hpp"
 #include "../support/bounded_drive.hpp"
 #include "../support/findings.hpp"
@@ -73,6 +75,33 @@ TEST(InvertedAndMoved, StreamsThatOptionsInvertInVainAreDoubtful) {
   if (!finding->certain) {
     ASSERT_TRUE(finding->value);
     EXPECT_GT(*finding->value, 1.5);
+  }
+}
+
+/// Two cameras in orbit around one board, as solvePnP writes their poses: they travel further than the board
+/// does before them.
+TEST(InvertedAndMoved, CamerasThatWatchABoardAreRightlyInverted) {
+  for (const double apart : {0.2, 1.0}) {
+    testing::Random random(7);
+    const Pose mounting{rotation_exp({0.1, -0.3, 0.2}), {apart, 0.05, -0.02}};
+    const auto noisy = [&](const Pose& pose) {
+      return to_dual_quaternion(pose * Pose{rotation_exp(random.normal3(0.001)), random.normal3(0.001)});
+    };
+    Trajectory a, b;
+    for (int i = 0; i < 600; ++i) {
+      const double t = 0.1 * i;
+      // two metres from the board, and looking at it
+      const Rotation towards(
+          rotation_exp({0.5 * std::sin(0.31 * t), 0.6 * std::sin(0.23 * t), 0.4 * std::sin(0.17 * t)}));
+      const Pose camera{towards, towards * Eigen::Vector3d(0, 0, -2 - 0.3 * std::sin(0.4 * t))};
+      a.push_back({100'000 * i, conjugate(noisy(camera))});
+      b.push_back({100'000 * i, conjugate(noisy(camera * mounting))});
+    }
+    CalibrationOptions inverted;
+    inverted.read_a.invert = inverted.read_b.invert = true;
+    const Calibration calibration = calibrate(a, b, inverted);
+    EXPECT_LE(calibration.verdict, Verdict::incomplete) << calibration.reason;
+    EXPECT_LT((calibration.T_a_b.translation - mounting.translation).norm(), 0.05);
   }
 }
 

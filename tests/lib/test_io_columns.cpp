@@ -28,7 +28,6 @@ class Columns : public ::testing::Test {
   testing::ScratchFolder folder_;
 };
 
-/// Bags as csv: the time of recording is 0.25 s later than the header's.
 /// phi, theta and psi are roll, pitch and yaw; theta alone is the heading of a robot in the plane.
 TEST_F(Columns, GreekLettersOfAnglesAreRollPitchAndYaw) {
   for (const char* const header : {"t,x,y,z,phi,theta,psi", "t,x,y,z,phi[rad],theta[rad],psi[rad]"}) {
@@ -42,10 +41,14 @@ TEST_F(Columns, GreekLettersOfAnglesAreRollPitchAndYaw) {
   }
   const Trajectory psi_first = read("t,x,y,z,psi,theta,phi\n0,1,2,3,0.3,0,0\n1,1,2,3,0.3,0,0\n").trajectory;
   EXPECT_NEAR(rotation_log(to_pose(psi_first[0].pose).rotation).z(), 0.3, 1e-12);
+  // heading and steering
+  const Trajectory bicycle = read("t,x,y,theta,phi\n0,1,2,0.3,9\n1,1,2,0.3,9\n").trajectory;
+  EXPECT_NEAR(rotation_log(to_pose(bicycle[0].pose).rotation).z(), 0.3, 1e-12);
   const Trajectory plane = read("t,x,y,theta,phi_rate\n0,1,2,0.3,9\n1,1,2,0.3,9\n").trajectory;
   EXPECT_NEAR(rotation_log(to_pose(plane[0].pose).rotation).z(), 0.3, 1e-12);
 }
 
+/// Bags as csv: the time of recording is 0.25 s later than the header's.
 TEST_F(Columns, TheTimeOfTheHeaderCounts) {
   const std::string pose = "x,y,z,qx,qy,qz,qw\n", row = "1,2,3,0,0,0,1\n";
   struct Export {

@@ -101,6 +101,11 @@ std::optional<Finding> inverted_in_vain(const Evidence& evidence, const Diagnosi
   const Heading of_here = heading(here), of_there = heading(there);
   if (forward(of_here, options.heading) && !forward(of_there, options.heading)) return std::nullopt;
   if (loss_in_metres(evidence.given.explained, back.explained) > tuning.most_loss) return std::nullopt;
+  const Pose T_here = to_pose(evidence.given.explained.fit.T), T_there = to_pose(back.explained.fit.T);
+  const double arm_here = T_here.translation.norm(), arm_there = T_there.translation.norm();
+  const bool one_world =
+      arm_there < tuning.one_world && rotation_log(T_there.rotation).norm() < tuning.one_world_turned;
+  if (one_world || !(arm_here > arm_there + options.tolerance_translation)) return std::nullopt;
   const double times = std::sqrt(of_here.way_a * of_here.way_b / (of_there.way_a * of_there.way_b));
   if (!(times > tuning.least_times)) return std::nullopt;
   Finding finding = finding_of(back, compare(evidence.given.explained, back.explained), false);

@@ -30,6 +30,11 @@ struct InvertedInVainOptions {
   /// How many times as far both sensors travel as in the files, at least. In files that are rightly inverted
   /// both travel less, unless both turn about the origins of their worlds. In vain it was 3 to 9 times.
   double least_times = 1.5;
+  /// Cameras that watch targets travel further than their inverse, up to 4.6 times in orbits around a board.
+  /// Rightly inverted the answer is then the mounting; in the files it is how the targets sit to each other:
+  /// the identity, to this [m, rad], where it is one board. In vain the answer is the distance of two worlds,
+  /// and longer than that of the files by more than the tolerance of a translation.
+  double one_world = 0.1, one_world_turned = 0.05;
 };
 
 /// Finding inverted_both, uncertain, of streams that options inverted, where both sensors travel further than

@@ -178,9 +178,10 @@ void remove_those_not_shown(const Instants& instants, const PoseReading& reading
   for (Move& move : moves) {
     const StepShown across = step_across(instants, reading, move, begin, motions);
     if (across == StepShown::no) continue;
-    const bool evident = move.false_alarm <= StepOptions().evident;
-    if (across == StepShown::not_at_once && !evident) continue;
-    if (across != StepShown::yes && !(across == StepShown::unmeasured && evident)) move.certain = false;
+    if (across != StepShown::yes && move.false_alarm > StepOptions().evident) {
+      if (across == StepShown::not_at_once) continue;
+      move.certain = false;
+    }
     shown.push_back(std::move(move));
   }
   moves = std::move(shown);

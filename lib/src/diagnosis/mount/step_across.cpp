@@ -147,25 +147,21 @@ Along along(const Move& move, const Vector6d& change, const Vector6d& step, cons
 
 constexpr Eigen::Index step_groups[] = {0, 3};  // translation and rotation
 
-/// What leads elsewhere for as long as a mount creeps is an odometry that drifts; at once, one that began
-/// anew.
 StepShown shown_of(const std::optional<LedSteps>& steps, const Move& move, const StepOptions& options) {
-  if (!steps) return StepShown::unmeasured;
+  if (!steps) return StepShown::unknown;
   const Vector6d change = steps->part * frame_a_difference(move.before, move.after);
   bool still = false, hidden = false;
   for (const Eigen::Index group : step_groups) {
     const Along here = along(move, change, steps->step, steps->noise, group, options);
     if (!std::isfinite(here.stddev)) continue;
-    const bool shows = here.part >= options.still;
-    if (!shows && here.length <= options.of_change)
+    if (here.part < options.still && here.length <= options.of_change)
       (here.stddev <= options.known ? still : hidden) = true;
-    else if (here.stddev <= options.known_step && (shows || move.kind == MoveKind::bump))
+    else if (here.stddev <= options.known_step)
       return StepShown::yes;
     else
       hidden = true;
   }
-  if (hidden) return StepShown::unknown;
-  return still ? StepShown::no : StepShown::unmeasured;
+  return still && !hidden ? StepShown::no : StepShown::unknown;
 }
 
 /// Whether the step shows at another time: noise that wanders may have misplaced the move.

@@ -22,16 +22,11 @@ struct StepOptions {
   /// A step that is another one than the change and longer than this part of it is no sign of a mount that
   /// stands still: the odometry began anew.
   double of_change = 0.75;
-  /// Chance of a move that is believed although too few motions are beside it to show their noise, at most.
-  /// Of 1,020 clean drives of two simulators those that had a move had 3e-12 and more. Where the noise is
-  /// known, it counts alone: the chance takes it for forgotten between the parts of the drive, and noise that
-  /// is remembered for as long as the drive has moves of any chance (1e-25).
+  /// Chance of a move that is believed although noise may hide it, at most. Of 1,020 clean drives of two
+  /// simulators those that had a move had 3e-12 and more.
   double evident = 1e-12;
   double known = 0.25;  ///< standard deviation of the part, at most, where a mount is said to stand still
-  /// And where a step is said to show. A mount that wanders also makes a step where it seems to move: of ten
-  /// drives with such a mount (seeds 1000 to 1159 of docs/trust_rules.md, "Noise that is remembered") the
-  /// steps have 0.20 and more, of eight that were knocked by 3 deg 0.01 to 0.04 (noise below 5 %).
-  double known_step = 0.17;
+  double known_step = 0.33;  ///< and where a step is said to show: three of them
 };
 
 /// Whether the motions across the time of a move show its change.
@@ -39,8 +34,7 @@ enum class StepShown {
   yes,          ///< or another step
   slowly,       ///< not at its time, but with the seconds before and after it
   elsewhere,    ///< not at its time, but at another one: noise that wanders may have misplaced the move
-  unknown,      ///< the noise is as large as the change
-  unmeasured,   ///< too few motions are beside it
+  unknown,      ///< the noise is as large as the change, or too few motions are beside it
   not_at_once,  ///< not at its time; with the seconds around it unknown
   no
 };

@@ -59,8 +59,9 @@ std::vector<RowOnLines> rows_on_lines(const TimedPoses& rows, const TimedPoses& 
 }
 
 /// Of the half of the motions that leaves more on the longer lines: of a sensor that stands nothing is left
-/// on either.
-bool far_less(std::vector<std::pair<double, double>> far_and_near, double least, double most) {
+/// on either. size: of the motions.
+bool far_less(std::vector<std::pair<double, double>> far_and_near, double size,
+              const ChordCopyOptions& options) {
   const std::size_t half = far_and_near.size() / 2;
   std::nth_element(far_and_near.begin(), far_and_near.begin() + static_cast<std::ptrdiff_t>(half),
                    far_and_near.end());
@@ -69,8 +70,9 @@ bool far_less(std::vector<std::pair<double, double>> far_and_near, double least,
     far.push_back(far_and_near[i].first);
     near.push_back(far_and_near[i].second);
   }
-  const double of_far = median(std::move(far));
-  return of_far > least && median(std::move(near)) <= most * of_far;
+  const double of_far = median(std::move(far)), of_near = median(std::move(near));
+  return of_far > options.least * size && of_near <= options.digits * size &&
+         of_near <= options.most * of_far;
 }
 
 /// Whether the rows of one stream lie on the lines between the poses of the other one.
@@ -95,8 +97,8 @@ bool lies_on_lines(const TimedPoses& rows, const TimedPoses& others, double max_
     rotations.emplace_back(of_far.rotation, of_near.rotation);
     translations.emplace_back(of_far.translation, of_near.translation);
   }
-  return far_less(std::move(rotations), options.least, options.most) &&
-         far_less(std::move(translations), options.least * on_near.translation, options.most);
+  return far_less(std::move(rotations), 1, options) &&
+         far_less(std::move(translations), on_near.translation, options);
 }
 
 }  // namespace

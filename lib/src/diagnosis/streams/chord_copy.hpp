@@ -25,6 +25,10 @@ struct ChordCopyOptions {
   double most = 0.02;
   /// What is left on the longer lines, at least [rad, and of the typical motion]: digits of doubles.
   double least = 1e-6;
+  /// What is left on the lines between neighbours, at most: six digits of a file. Sensors with a noise of 0.1
+  /// % leave 1e-3, and with wrong poses among theirs the longer lines, which have more of them, leave any
+  /// number.
+  double digits = 2e-5;
 };
 
 /// same_stream, certain: rotations and positions of one stream lie on the lines between the poses of the

@@ -21,9 +21,8 @@ Finding positions_of_one() {
   finding.code = "same_stream";
   finding.message =
       "Both streams travel the same distances to rounding, as two sensors never do: the positions of one "
-      "were "
-      "copied from the other's, or both are of a third sensor. The translation of the answer is the one that "
-      "was put in.";
+      "were copied from the other's, or both are of a third sensor. The translation of the answer is the one "
+      "that was put in.";
   finding.remedy =
       "Give what each sensor measured by itself; ignore this where the positions were simulated without "
       "noise.";

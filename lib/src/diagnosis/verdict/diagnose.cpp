@@ -179,7 +179,7 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
   result.findings = foreseen.findings;
   std::optional<Assumed> level;
   if (pairing.mode != Mode::planar) level = two_dimensions(motions);
-  std::optional<Assumed> missing = missing_in_both(motions);
+  std::optional<Assumed> missing = missing_in_both(evidence.instants, motions);
   for (const std::optional<Assumed>* assumed : {&level, &missing})
     for (std::size_t i = 0; i < 6; ++i)
       if (*assumed && (*assumed)->directions[i]) {

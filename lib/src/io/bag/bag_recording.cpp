@@ -3,6 +3,8 @@
 #include "io/bag/bag_recording.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <string_view>
 #include <utility>
 
@@ -118,8 +120,10 @@ void BagRecording::refuse(const std::string& topic, const std::string& reason) {
 /// Whether a first stamp of 0 is a time: the second message was recorded as long after its stamp as the first
 /// one, to a second. Of an unstamped message of a drive with wall-clock stamps that is off by years.
 bool BagRecording::begins_at_zero(const Usable& first, const Usable& second) {
-  constexpr std::int64_t most_ns = 1'000'000'000;  // queues delay by less
-  return std::abs(second.log_time_ns - second.stamp_ns - first.log_time_ns) <= most_ns;
+  constexpr double most_ns = 1e9;                                               // queues delay by less
+  const auto number = [](std::int64_t ns) { return static_cast<double>(ns); };  // hostile ones would overflow
+  return std::abs(number(second.log_time_ns) - number(second.stamp_ns) - number(first.log_time_ns)) <=
+         most_ns;
 }
 
 /// At the time of its header; at that of recording where no message of the stream has another. A simulation

@@ -202,7 +202,7 @@ bool have_euler_letters(const std::vector<ColumnName>& names) {
     return std::any_of(names.begin(), names.end(),
                        [&](const ColumnName& name) { return is_angle_called(name, letter); });
   };
-  return has("phi") + has("theta") + has("psi") >= 2;
+  return (has("psi") || has("yaw")) && (has("phi") || has("theta"));
 }
 
 Meaning meaning_among_euler_letters(const ColumnName& name) {

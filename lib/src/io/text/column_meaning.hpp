@@ -32,8 +32,7 @@ inline constexpr int time_of_header = 5;
 
 Meaning meaning_of(const ColumnName& name);
 
-/// Whether the names hold two of phi, theta and psi, which are then roll, pitch and yaw. theta alone is a
-/// heading, and so is psi.
+/// Whether phi and theta are roll and pitch: beside psi or a yaw. theta alone is a heading, and so is psi.
 bool have_euler_letters(const std::vector<ColumnName>& names);
 
 /// What a name means among such names.

@@ -3,6 +3,7 @@
 #include "io/text/rotation_rows.hpp"
 
 #include <Eigen/LU>
+#include <cmath>
 
 #include "egocal/limits.hpp"
 #include "io/text.hpp"
@@ -22,7 +23,10 @@ bool looks_like_pose_matrix(const std::vector<std::string_view>& fields, std::si
     if (!parse_number(fields[first + i], v[i])) return false;
   Eigen::Matrix3d R;
   R << v[0], v[1], v[2], v[4], v[5], v[6], v[8], v[9], v[10];
-  return is_rotation(R) && (count == 12 || (v[12] == 0 && v[13] == 0 && v[14] == 0 && v[15] == 1));
+  constexpr double rounding = 1e-6;  // of products of matrices in single precision
+  const auto near = [](double value, double expected) { return std::abs(value - expected) < rounding; };
+  return is_rotation(R) &&
+         (count == 12 || (near(v[12], 0) && near(v[13], 0) && near(v[14], 0) && near(v[15], 1)));
 }
 
 }  // namespace egocal::detail
