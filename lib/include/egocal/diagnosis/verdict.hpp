@@ -63,9 +63,9 @@ enum class MountingChange {
 struct Finding {
   /// inverted_a|_b|_both, quaternion_order_a|_b|_both, scale, units, scale_change, clock_offset, clock_drift,
   /// time_unit, stamps_a|_b, axes_a|_b|_both, late_positions_a|_b, turning_scale_a|_b, plane_a|_b,
-  /// mount_moved, unrelated, frozen_a|_b, missing_a|_b, flat_a|_b|_both, same_stream, samples, wrong_samples,
-  /// undersampled_a|_b, held_a|_b, mixed_frames_a|_b, odometry, nominal, reversed_steps, filled_a|_b,
-  /// clock_step, too_little_motion. docs/findings.md says what each means.
+  /// mount_moved, unrelated, frozen_a|_b, missing_a|_b|_both, flat_a|_b|_both, same_stream, samples,
+  /// wrong_samples, undersampled_a|_b, held_a|_b, mixed_frames_a|_b, odometry, nominal, filled_a|_b,
+  /// reversed_steps, clock_step, too_little_motion. docs/findings.md says what each means.
   std::string code;
   bool certain = false;       ///< it fits clearly better; otherwise both remain possible
   std::string message;        ///< what was found, one sentence
@@ -120,7 +120,7 @@ struct Diagnosis {
   /// exclude, rounding, and the change without a fifth of the drive where a direction hinges on it. To be
   /// added as squares; 0 where they add nothing.
   std::array<double, 6> timing_stddev{};
-  /// Directions that both streams assume and nobody measured (flat_both), in the same order: the motions
+  /// Directions that both streams assume and neither measured (flat_both), in the same order: the motions
   /// agree about them without an error, and they are not observable.
   std::array<bool, 6> assumed{};
 };
