@@ -77,7 +77,7 @@ TEST_F(LiveVerdict, NamesAMistakeAndOutlivesAKill) {
 
 /// Of streams in two dimensions. The reason said so, while the screen and the export had roll and pitch known
 /// to a millionth of a degree.
-TEST_F(LiveVerdict, NobodyShowsAsKnownWhatBothStreamsAssume) {
+TEST_F(LiveVerdict, WhatBothStreamsAssumeIsShownAsUnknown) {
   for (const char* program : {"egocal-pairing", "egocal-diagnosis", "egocal-global", "egocal-fast"})
     start(program);
   const std::string bus = " --rig " + rig_file + " --lcm-url '" + url + "'", watched = folder / "watched",

@@ -112,7 +112,8 @@ TEST_F(VerdictShown, ASentenceThatIsEmptyLeavesNoTrace) {
   EXPECT_THAT(shown(Screen::detail, 110, 42), Not(HasSubstr("Cure:")));
 }
 
-// The solver's standard deviations were shown beside a verdict that says that nobody measured roll and pitch.
+// The solver's standard deviations were shown beside a verdict that says: neither stream measured roll and
+// pitch.
 TEST_F(VerdictShown, WhatIsKnownOfADirectionIsTheVerdictsToSay) {
   const auto answer = [&] { return nlohmann::json::parse(json_line(model))["pairs"][0]["answer"]; };
   const double stated = test::calibration_at(problem, false).stddev[0];

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Wheel odometry beside a SLAM of flat scans: nobody measured roll, pitch and height.
+// Wheel odometry beside a SLAM of flat scans: neither stream measures roll, pitch and height.
 #pragma once
 
 #include <cmath>

@@ -113,7 +113,7 @@ TEST(LastAnswersOfALog, AreNotWaitedForForEverWhereAProcessIsHeld) {
   EXPECT_FALSE(answers.wait_on(1, {.held = true}, now));
 }
 
-/// Whoever asks has no core either.
+/// The process that waits has hardly any core either.
 TEST(LastAnswersOfALog, AQuestionThatComesLateCountsForLittle) {
   LastAnswers answers({});
   Time now{};

@@ -24,10 +24,10 @@ struct LastAnswersOptions {
   /// Without a further answer: of processor time while a process computes, of any while one is held. A
   /// diagnosis takes a second of a core, which is a minute where children get a sixtieth of it.
   std::chrono::milliseconds longest_stall{60'000};
-  /// No more than this counts between two questions, which are a tenth of a second apart: whoever asks more
-  /// seldom has no core either, and neither have those that are to answer.
+  /// Questions are a tenth of a second apart, and at most this much counts between two of them. A longer
+  /// pause means that the supervisor itself had no core, so the processes that answer had none either.
   std::chrono::milliseconds longest_step{300};
-  /// Until it is said for the first time what is waited for; the next time doubles each time.
+  /// Time until the first report of what is awaited; each further interval is twice as long.
   std::chrono::milliseconds report{10'000};
 };
 

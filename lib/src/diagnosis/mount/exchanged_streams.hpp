@@ -13,9 +13,9 @@ struct ExchangedStreamsOptions {
   /// `most` on the other side, and less than `part` of what that answer itself leaves there
   /// (LargeMoveOptions::contradicts, own).
   double most = 0.3, part = 0.4;
-  /// And less than so many times what the other side's own answer leaves. A sensor that was turned by 90 or
-  /// 180 degrees about a vehicle's vertical has nearly the inverse rotation, and 1.7 to 6 times the residual
-  /// by its place; of 25 exchanged drives of four machines the largest was 1.28.
+  /// The residual must also be below this multiple of what the other side's own answer leaves. A sensor that
+  /// was turned by 90 or 180 degrees about a vehicle's vertical has nearly the inverse rotation, but 1.7 to 6
+  /// times the residual by its position. In 25 exchanged drives of four machines the largest ratio was 1.28.
   double than_own = 1.5;
 };
 

@@ -120,7 +120,7 @@ void BagRecording::refuse(const std::string& topic, const std::string& reason) {
 /// Whether a first stamp of 0 is a time: the second message was recorded as long after its stamp as the first
 /// one, to a second. Of an unstamped message of a drive with wall-clock stamps that is off by years.
 bool BagRecording::begins_at_zero(const Usable& first, const Usable& second) {
-  constexpr double most_ns = 1e9;                                               // queues delay by less
+  constexpr double most_ns = 1e9;  // [ns] a second: queues of messages delay by less
   const auto number = [](std::int64_t ns) { return static_cast<double>(ns); };  // hostile ones would overflow
   return std::abs(number(second.log_time_ns) - number(second.stamp_ns) - number(first.log_time_ns)) <=
          most_ns;

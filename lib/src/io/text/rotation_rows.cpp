@@ -16,6 +16,11 @@ bool is_rotation(const Eigen::Matrix3d& R) {
          R.determinant() > 0;
 }
 
+bool is_of_last_row(double value, std::size_t column) {
+  constexpr double rounding = 1e-6;  // eight times the last digit of a float near 1, after some products
+  return std::abs(value - (column == 3 ? 1 : 0)) < rounding;
+}
+
 bool looks_like_pose_matrix(const std::vector<std::string_view>& fields, std::size_t first) {
   double v[16] = {};
   const std::size_t count = fields.size() - first;
@@ -23,10 +28,9 @@ bool looks_like_pose_matrix(const std::vector<std::string_view>& fields, std::si
     if (!parse_number(fields[first + i], v[i])) return false;
   Eigen::Matrix3d R;
   R << v[0], v[1], v[2], v[4], v[5], v[6], v[8], v[9], v[10];
-  constexpr double rounding = 1e-6;  // of products of matrices in single precision
-  const auto near = [](double value, double expected) { return std::abs(value - expected) < rounding; };
-  return is_rotation(R) &&
-         (count == 12 || (near(v[12], 0) && near(v[13], 0) && near(v[14], 0) && near(v[15], 1)));
+  bool last_row = true;
+  for (std::size_t i = 12; i < count; ++i) last_row = last_row && is_of_last_row(v[i], i - 12);
+  return is_rotation(R) && last_row;
 }
 
 }  // namespace egocal::detail

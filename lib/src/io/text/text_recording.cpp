@@ -306,11 +306,9 @@ double TextRecording::angle(const TextRows& rows, Quantity quantity) const {
 
 /// 0 0 0 1 of a 4 x 4 pose; column by column the last four numbers hold the position.
 void TextRecording::check_last_row(const TextRows& rows) const {
-  constexpr double last_row[] = {0, 0, 0, 1};
-  constexpr double rounding = 1e-6;  // of products of matrices in single precision
   for (std::size_t i = 12; layout_.first_column + i < layout_.fields; ++i) {
     const std::size_t index = layout_.first_column + i;
-    if (std::abs(value(rows, index) - last_row[i - 12]) < rounding) continue;
+    if (is_of_last_row(value(rows, index), i - 12)) continue;
     throw error_at(file_, rows.lines.number(), "field " + std::to_string(index + 1),
                    "expected 0 0 0 1 at the end of a 4 x 4 pose, got " + quoted(rows.fields[index]) +
                        "; write the matrix row by row");
