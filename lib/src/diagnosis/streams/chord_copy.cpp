@@ -9,6 +9,7 @@
 
 #include "diagnosis/motions/motions.hpp"
 #include "diagnosis/motions/robust_fit.hpp"
+#include "diagnosis/streams/timed_poses.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/problem/cost.hpp"
@@ -17,12 +18,6 @@
 namespace egocal::detail {
 
 namespace {
-
-/// A stream and its times since one origin [s].
-struct TimedPoses {
-  const Trajectory& poses;
-  Times times;
-};
 
 /// A pose of one stream, and the other one at its time: on the line between its neighbours there, and on the
 /// line from the pose before to the one after these.

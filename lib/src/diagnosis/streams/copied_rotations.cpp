@@ -5,24 +5,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "diagnosis/motions/motions.hpp"
+#include "diagnosis/streams/timed_poses.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal::detail {
 
 namespace {
 
-/// A stream and its times since one origin [s].
-struct Timed {
-  const Trajectory& poses;
-  Times times;
-};
-
 /// At a time of the other stream; empty where no two poses are around it.
-std::optional<Rotation> rotation_at(const Timed& stream, double time, double max_gap) {
+std::optional<Rotation> rotation_at(const TimedPoses& stream, double time, double max_gap) {
   std::size_t from = 0, to = stream.times.size();  // the first pose after the time is in [from, to]
   while (from < to) {
     const std::size_t middle = from + (to - from) / 2;
@@ -40,7 +36,7 @@ std::optional<Rotation> rotation_at(const Timed& stream, double time, double max
                     to_pose(stream.poses[from].pose).rotation);
 }
 
-bool are_copies(const Timed& rows, const Timed& others, double max_gap,
+bool are_copies(const TimedPoses& rows, const TimedPoses& others, double max_gap,
                 const CopiedRotationsOptions& options) {
   std::vector<double> angles, differences;
   std::optional<std::pair<Rotation, Rotation>> last;
@@ -79,7 +75,8 @@ Finding rotations_of_one() {
 std::optional<Finding> copied_rotations(const Trajectory& a, const Trajectory& b, const ClockModel& clock,
                                         double max_gap, const CopiedRotationsOptions& options) {
   if (a.empty() || b.empty()) return std::nullopt;
-  const Timed of_a{a, Times(a, a.front().time_us, ClockModel{})}, of_b{b, Times(b, a.front().time_us, clock)};
+  const TimedPoses of_a{a, Times(a, a.front().time_us, ClockModel{})},
+      of_b{b, Times(b, a.front().time_us, clock)};
   if (!are_copies(of_b, of_a, max_gap, options) && !are_copies(of_a, of_b, max_gap, options))
     return std::nullopt;
   return rotations_of_one();

@@ -37,14 +37,15 @@ StreamCheckOptions checks_of(const DiagnosisOptions& options) {
   return checks;
 }
 
-/// One stream was made from the other as a whole, or its rotations were.
-std::optional<Finding> made_stream(const Evidence& evidence, const Fit& fit, std::vector<Finding>& findings) {
+/// One stream was made from the other as a whole, or its rotations were. to_rounding: made_from_each_other().
+std::optional<Finding> made_stream(const Evidence& evidence, const Fit& fit,
+                                   const std::vector<Finding>& to_rounding, std::vector<Finding>& findings) {
   const Streams& streams = evidence.streams;
   if (std::optional<Finding> copy = chord_copy(streams.a, streams.b, evidence.clock, streams.max_gap)) {
     std::erase_if(findings, filled);
     return copy;
   }
-  if (std::vector<Finding> made = made_from_each_other(fit); !made.empty()) return std::move(made.front());
+  if (!to_rounding.empty()) return to_rounding.front();
   if (std::optional<Finding> rotations =
           copied_rotations(streams.a, streams.b, evidence.clock, streams.max_gap))
     return rotations;
@@ -65,7 +66,8 @@ void name_same_stream(const Evidence& evidence, const Answered& answered, const 
   const auto explains = [](const Finding& one) { return certain_of_either(one) && !filled(one); };
   const auto explains_otherwise = [&](const Finding& one) { return explains(one) && !turned_axes(one); };
   if (std::any_of(findings.begin(), findings.end(), explains_otherwise)) return;
-  if (made_from_each_other(result.fit).empty())
+  const std::vector<Finding> to_rounding = made_from_each_other(result.fit);
+  if (to_rounding.empty())
     if (std::optional<Finding> positions =
             copied_positions(evidence.instants, evidence.given.explained.motions)) {
       std::erase_if(findings, turned_axes);
@@ -73,7 +75,7 @@ void name_same_stream(const Evidence& evidence, const Answered& answered, const 
       return;
     }
   if (std::any_of(findings.begin(), findings.end(), explains)) return;
-  if (std::optional<Finding> made = made_stream(evidence, result.fit, findings)) {
+  if (std::optional<Finding> made = made_stream(evidence, result.fit, to_rounding, findings)) {
     findings.push_back(*std::move(made));
     return;
   }
