@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <vector>
 
 #include "../support/random_motion.hpp"
 #include "../support/shaken_car.hpp"
+#include "diagnosis/motions/motions.hpp"
 #include "egocal/calibrate.hpp"
 #include "pairing/smooth_interpolation.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -144,6 +146,35 @@ Off calibrated(const testing::Streams& streams, std::size_t smooth_poses) {
     off.deviations = std::max(off.deviations,
                               std::abs(error[i]) / found.observability.stddev[static_cast<std::size_t>(i)]);
   return off;
+}
+
+// The diagnosis asks for the same poses again and again. In a part of them nothing is smooth.
+TEST(SmoothInterpolation, WhatIsRememberedHasTheSameBits) {
+  testing::Streams streams =
+      testing::shaken_car({.rate_a = 10, .rate_b = 10, .phase_b = 0.03, .seconds = 20});
+  streams.b[100].pose.dual *= 2;
+  const detail::Instants plain = detail::synchronised(streams.a, streams.b, {}, 0.5),
+                         remembering = plain.remembering();
+  std::vector<bool> wrong(plain.size());
+  wrong[3] = true;
+  const detail::Instants fewer = remembering.without(wrong);
+  detail::PoseReading inverted;
+  inverted.invert = true;
+  ASSERT_GT(plain.size(), 150u);
+  const auto expect_same = [&](std::size_t i, const detail::PoseReading& reading) {
+    const auto expect = [&](const detail::PosePair& found) {
+      const detail::PosePair given = plain.at(i, reading, reading);
+      EXPECT_EQ(found.a.vec(), given.a.vec()) << i;
+      EXPECT_EQ(found.b.vec(), given.b.vec()) << i;
+    };
+    expect(remembering.at(i, reading, reading));
+    if (i > 3) expect(fewer.at(i - 1, reading, reading));
+  };
+  for (int again = 0; again < 2; ++again)
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+      expect_same(i, {});
+      expect_same(i, inverted);
+    }
 }
 
 // When both streams are cut alike they keep slow bends only. Before smooth interpolation the height of a car

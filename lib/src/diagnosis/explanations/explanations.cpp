@@ -181,7 +181,7 @@ Evidence gather(const Trajectory& a, const Trajectory& b, const ClockModel& cloc
                     turning_of(b),
                     {a, b, {}, {}, max_gap, 1, options, {}, {}},
                     clock,
-                    synchronised(a, b, clock, max_gap, 1, options.motions),
+                    synchronised(a, b, clock, max_gap, 1, options.motions).remembering(),
                     1,
                     {},
                     {}};

@@ -87,6 +87,10 @@ double mean_up_to(double longest, const std::vector<double>& lengths) {
   return sum / std::max(1.0, static_cast<double>(count));
 }
 
+StampedPose read(const StampedPose& given, const PoseReading& reading) {
+  return {given.time_us, reread(given.pose, reading)};
+}
+
 Motion motion_from(const DualQuaternion& a, const DualQuaternion& b) {
   Motion motion;
   motion.a = canonical_sign(a);
@@ -125,24 +129,28 @@ double Instants::part_of_way(const Place& place) const {
   return behind < same_time ? 0 : behind / ((*other_times_)[place.before + 1] - at);
 }
 
-PosePair Instants::interpolated(const Place& place, double part, const PoseReading& read_key,
-                                const PoseReading& read_other) const {
-  const SynchroniserOptions& options = interpolation_;
-  const auto read = [](const StampedPose& given, const PoseReading& reading) {
-    return StampedPose{given.time_us, reread(given.pose, reading)};
-  };
-  const StampedPose pose = read((*keys_)[place.key], read_key);
-  const std::size_t side = options.smooth_poses / 2;
-  if (place.before + 1 >= side && place.before + side < others_->size()) {
-    std::span<const StampedPose> around = std::span(*others_).subspan(place.before + 1 - side, 2 * side);
-    std::array<StampedPose, SynchroniserOptions::most_smooth_poses> other_reading;
-    if (!as_given(read_other)) {
-      std::transform(around.begin(), around.end(), other_reading.begin(),
-                     [&](const StampedPose& given) { return read(given, read_other); });
-      around = std::span(other_reading).first(2 * side);
-    }
-    if (const auto smooth = interpolate_smoothly(around, part, options)) return {pose.pose, *smooth};
+std::optional<DualQuaternion> Instants::interpolated_smoothly(const Place& place, double part,
+                                                              const PoseReading& read_other) const {
+  const std::size_t side = interpolation_.smooth_poses / 2;
+  if (place.before + 1 < side || place.before + side >= others_->size()) return std::nullopt;
+  std::span<const StampedPose> around = std::span(*others_).subspan(place.before + 1 - side, 2 * side);
+  std::array<StampedPose, SynchroniserOptions::most_smooth_poses> other_reading;
+  if (!as_given(read_other)) {
+    std::transform(around.begin(), around.end(), other_reading.begin(),
+                   [&](const StampedPose& given) { return read(given, read_other); });
+    around = std::span(other_reading).first(2 * side);
   }
+  return interpolate_smoothly(around, part, interpolation_);
+}
+
+PosePair Instants::interpolated(std::size_t i, double part, const PoseReading& read_key,
+                                const PoseReading& read_other) const {
+  const Place& place = places_[i];
+  const StampedPose pose = read((*keys_)[place.key], read_key);
+  const auto smooth_here = [&] { return interpolated_smoothly(place, part, read_other); };
+  const std::optional<DualQuaternion> smooth =
+      remembered_ && as_given(read_other) ? remembered_->at(i, smooth_here) : smooth_here();
+  if (smooth) return {pose.pose, *smooth};
   const StampedPose from = read((*others_)[place.before], read_other),
                     to = read((*others_)[place.before + 1], read_other);
   const DualQuaternion other = interpolate(from.pose, to.pose, part);
@@ -150,7 +158,7 @@ PosePair Instants::interpolated(const Place& place, double part, const PoseReadi
   const StampedPose before = read((*keys_)[place.key - 1], read_key),
                     after = read((*keys_)[place.key + 1], read_key);
   return {cut_alike({before, pose, after},
-                    {part, static_cast<double>(to.time_us - from.time_us), max_gap_us_}, options),
+                    {part, static_cast<double>(to.time_us - from.time_us), max_gap_us_}, interpolation_),
           other};
 }
 
@@ -159,16 +167,24 @@ PosePair Instants::at(std::size_t i, const PoseReading& read_a, const PoseReadin
   const PoseReading& read_key = b_slower_ ? read_b : read_a;
   const PoseReading& read_other = b_slower_ ? read_a : read_b;
   const double part = part_of_way(place);
-  PosePair poses = part > 0 ? interpolated(place, part, read_key, read_other)
+  PosePair poses = part > 0 ? interpolated(i, part, read_key, read_other)
                             : PosePair{reread((*keys_)[place.key].pose, read_key),
                                        reread((*others_)[place.before].pose, read_other)};
   if (b_slower_) std::swap(poses.a, poses.b);
   return poses;
 }
 
+Instants Instants::remembering() const {
+  constexpr std::size_t most = 100'000;  // 65 bytes each
+  Instants others = *this;
+  others.remembered_ = size() <= most ? std::make_shared<RememberedPoses>(size()) : nullptr;
+  return others;
+}
+
 Instants Instants::through(std::size_t smooth_poses) const {
   Instants other = *this;
   other.interpolation_.smooth_poses = smooth_poses;
+  other.remembered_ = nullptr;
   return other;
 }
 
@@ -177,7 +193,7 @@ Instants Instants::without(const std::vector<bool>& wrong) const {
   others.places_.clear();
   for (std::size_t i = 0; i < places_.size(); ++i)
     if (!wrong[i]) others.places_.push_back(places_[i]);
-  return others;
+  return remembered_ ? others.remembering() : others;
 }
 
 void Instants::fetch(std::size_t i) const {

@@ -5,11 +5,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "diagnosis/motions/reading.hpp"
+#include "diagnosis/motions/remembered_poses.hpp"
 #include "egocal/diagnosis/options.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/pairing/options.hpp"
@@ -68,6 +70,9 @@ class Instants {
   bool between_poses(std::size_t i) const { return part_of_way(places_[i]) > 0; }
   /// Whether the stream of b gives the stamps, and that of a is interpolated.
   bool b_slower() const { return b_slower_; }
+  /// The same instants, which remember what at() interpolates in a stream as it was given, unless there are
+  /// too many: for instants that are looked at again and again.
+  Instants remembering() const;
   /// The same instants, interpolated through another number of poses (SynchroniserOptions::smooth_poses).
   Instants through(std::size_t smooth_poses) const;
   /// Those that are not marked; wrong: per instant.
@@ -87,9 +92,12 @@ class Instants {
   };
   /// Where the instant lies between the pose of the other stream and the next one: 0 at the pose, below 1.
   double part_of_way(const Place& place) const;
-  /// Both poses, of the slower stream first.
-  PosePair interpolated(const Place& place, double part, const PoseReading& read_key,
+  /// Both poses at instant i, of the slower stream first.
+  PosePair interpolated(std::size_t i, double part, const PoseReading& read_key,
                         const PoseReading& read_other) const;
+  /// The pose of the other stream from several ones on both sides, where that can be.
+  std::optional<DualQuaternion> interpolated_smoothly(const Place& place, double part,
+                                                      const PoseReading& read_other) const;
 
   const Trajectory* keys_ = nullptr;
   const Trajectory* others_ = nullptr;
@@ -98,6 +106,7 @@ class Instants {
   bool b_slower_ = false;
   SynchroniserOptions interpolation_;
   std::vector<Place> places_;
+  std::shared_ptr<RememberedPoses> remembered_;  ///< of the other stream as it was given; empty: none
 };
 
 /// each: only every such pose of the slower stream is an instant.
