@@ -101,7 +101,9 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
         best = std::move(here);
       }
     }
+    const double before = product(scale);
     tighten(best);
+    if (product(scale) == before) break;  // another round would be the same
   }
   // the tightest fit may be tight by chance, with less than a majority
   best = search.settled(std::move(best), scale);
