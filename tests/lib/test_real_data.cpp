@@ -217,18 +217,20 @@ TEST_F(RealData, NoRunOfTheBenchmarkIsDoubtful) {
   }
 }
 
-// Under the wrong one of the two readings these streams fit up to ten times better.
+// Under the wrong one of the two readings these streams fit up to ten times better. One stream of each run,
+// by turns: each level of noise has a dozen runs.
 TEST_F(RealData, AnInvertedStreamOfTheBenchmarkIsNamed) {
-  for (const std::string& run : benchmark_runs())
-    for (const bool in_b : {false, true}) {
-      Trajectory a = testing::real_trajectory(run + "a.tum"), b = testing::real_trajectory(run + "b.tum");
-      Trajectory& wrong = in_b ? b : a;
-      wrong = testing::inverted(wrong);
-      const Calibration calibration = calibrate(a, b);
-      EXPECT_EQ(calibration.verdict, Verdict::contradictory) << run << ": " << calibration.reason;
-      EXPECT_NE(testing::find(calibration, in_b ? "inverted_b" : "inverted_a"), nullptr)
-          << run << ": " << calibration.reason;
-    }
+  bool in_b = false;
+  for (const std::string& run : benchmark_runs()) {
+    in_b = !in_b;
+    Trajectory a = testing::real_trajectory(run + "a.tum"), b = testing::real_trajectory(run + "b.tum");
+    Trajectory& wrong = in_b ? b : a;
+    wrong = testing::inverted(wrong);
+    const Calibration calibration = calibrate(a, b);
+    EXPECT_EQ(calibration.verdict, Verdict::contradictory) << run << ": " << calibration.reason;
+    EXPECT_NE(testing::find(calibration, in_b ? "inverted_b" : "inverted_a"), nullptr)
+        << run << ": " << calibration.reason;
+  }
 }
 
 }  // namespace
