@@ -77,8 +77,9 @@ TEST_F(DiagnosisService, AClockThatPairingFollowsIsNoMistake) {
   const std::int64_t begin_us = streams.b.front().time_us;
   for (StampedPose& pose : streams.b) pose.time_us -= (pose.time_us - begin_us) / 1000;
   rig.pairs[0].time_offset.reset();
+  diagnose_every_ten_seconds();
   start();
-  play(streams, 0, 900);
+  play(streams, 0, 900, 100);
   ASSERT_FALSE(verdicts.empty());
   const verdict_t& last = verdicts.back();
   EXPECT_NEAR(sent.time_offset, 0.09, 0.01);
