@@ -266,7 +266,8 @@ Checked<Answer> to_answer(const calibration_t& message) {
   const auto& stddev = message.stddev;
   if (!not_negative({stddev[0], stddev[1], stddev[2], stddev[3], stddev[4], stddev[5]}))
     return {{}, "standard deviation out of range"};
-  if (contradicts_itself(message)) return {{}, "answer that contradicts itself"};
+  if (contradicts_itself(message) || directions_contradict(message.observable, message.stddev))
+    return {{}, "answer that contradicts itself"};
   if (message.solve_ns < 0 || message.verify_ns < 0 || message.latency_us < -1)
     return {{}, "negative duration"};
 

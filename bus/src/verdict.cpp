@@ -24,6 +24,9 @@ constexpr std::size_t max_sentence = 400;
 
 constexpr const char* self_contradiction = "verdict that contradicts itself";
 
+/// Part of a standard deviation that rounding takes from a root of a sum of squares, generously.
+constexpr double added_by_rounding = 1e-9;
+
 /// What cannot be a number on the wire is none.
 double finite_or_zero(double value) {
   return std::isfinite(value) ? value : 0;
@@ -112,9 +115,20 @@ std::string take_observability(const verdict_t& message, ReceivedVerdict& receiv
     observability.stddev[i] = message.stddev[i];
     received.diagnosis.assumed[i] = std::isinf(message.stddev_added[i]);
     if (received.diagnosis.assumed[i] && observability.observable[i]) return self_contradiction;
+    // a sender may have added the squares in another way
+    if (observability.stddev[i] < (1 - added_by_rounding) * message.stddev_added[i])
+      return self_contradiction;
     if (!received.diagnosis.assumed[i]) received.diagnosis.timing_stddev[i] = message.stddev_added[i];
   }
-  return {};
+  return directions_contradict(message.observable, message.stddev) ? self_contradiction : "";
+}
+
+/// Whether it calls an answer good of which no motion says how well it is known.
+bool good_but_unknown(Verdict verdict, const Observability& observability) {
+  if (verdict != Verdict::good) return false;
+  for (std::size_t i = 0; i < 6; ++i)
+    if (observability.observable[i] && std::isinf(observability.stddev[i])) return true;
+  return false;
 }
 
 /// The words of "z yaw"; empty: one of them is no direction, or comes twice.
@@ -135,6 +149,12 @@ std::optional<std::vector<std::string>> directions_in(const std::string& text) {
 }
 
 }  // namespace
+
+Observability Judged::unknown() {
+  Observability result;
+  result.stddev.fill(std::numeric_limits<double>::infinity());
+  return result;
+}
 
 std::optional<Verdict> verdict_from_name(const std::string& text) {
   for (const Verdict verdict :
@@ -199,6 +219,7 @@ Checked<ReceivedVerdict> to_verdict(const verdict_t& message) {
   received.judged = {*T.value, message.utime_begin, message.utime_end, message.fit.poses};
   if (std::string reason = take_observability(message, received); !reason.empty())
     return {{}, std::move(reason)};
+  if (good_but_unknown(*verdict, received.judged.observability)) return {{}, self_contradiction};
   Diagnosis& diagnosis = received.diagnosis;
   diagnosis.verdict = *verdict;
   diagnosis.reason = message.reason;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace egocal::bus {
 
@@ -14,6 +15,12 @@ bool not_negative(std::initializer_list<double> values) {
 bool finite_not_negative(std::initializer_list<double> values) {
   return std::all_of(values.begin(), values.end(),
                      [](double value) { return std::isfinite(value) && value >= 0; });
+}
+
+bool directions_contradict(const std::int8_t (&observable)[6], const double (&stddev)[6]) {
+  for (std::size_t i = 0; i < 6; ++i)
+    if (observable[i] == 0 && !std::isinf(stddev[i])) return true;
+  return false;
 }
 
 bool bounded_by_diagonal(const Matrix8d& matrix, double slack) {

@@ -3,6 +3,7 @@
 // Checks that several messages need before their numbers are used.
 #pragma once
 
+#include <cstdint>
 #include <initializer_list>
 
 #include "egocal/geometry/dual_quaternion.hpp"
@@ -17,6 +18,10 @@ bool not_negative(std::initializer_list<double> values);
 
 /// The same, and all are finite.
 bool finite_not_negative(std::initializer_list<double> values);
+
+/// Whether a direction that is not observable has a finite standard deviation. The other way round may be
+/// meant: too few motions say how well a direction is known.
+bool directions_contradict(const std::int8_t (&observable)[6], const double (&stddev)[6]);
 
 /// Whether the diagonal bounds the other entries, as in a sum of M'M (Cauchy-Schwarz), up to `slack` [unit of
 /// the matrix].

@@ -106,6 +106,23 @@ TEST(VerdictMessage, SaysWhatIsKnownOfEachDirection) {
   EXPECT_EQ(later.hint, "");
 }
 
+/// Fewer than six blocks of motions have no spread; a direction may be observable all the same.
+TEST(VerdictMessage, MayStateAnObservableDirectionThatNoSpreadIsKnownOfUnlessItIsGood) {
+  verdict_t sent = message();
+  sent.observable[2] = 1;
+  ASSERT_TRUE(std::isinf(sent.stddev[2]));
+  sent.has_goal = 0;
+  for (const char* verdict : {"incomplete", "doubtful", "contradictory"}) {
+    sent.verdict = verdict;
+    const Checked<ReceivedVerdict> received = to_verdict(sent);
+    EXPECT_TRUE(received) << verdict << ": " << received.reason;
+  }
+  sent.verdict = "good";
+  EXPECT_EQ(to_verdict(sent).reason, "verdict that contradicts itself");
+  sent.stddev[2] = 0.1;
+  EXPECT_TRUE(to_verdict(sent)) << to_verdict(sent).reason;
+}
+
 TEST(VerdictMessage, ANumberThatIsNoneNeverLeaves) {
   Diagnosis diagnosis = example();
   diagnosis.fit.length_ratio = std::numeric_limits<double>::infinity();
@@ -144,6 +161,19 @@ TEST(VerdictMessage, IsRefusedWhereAnyFieldMakesNoSense) {
        [](verdict_t& m) {
          m.observable[2] = 1;
          m.stddev_added[2] = std::numeric_limits<double>::infinity();
+       }},
+      {"known although it is not observable", [](verdict_t& m) { m.stddev[2] = 0.1; }},
+      {"known better than what is added",
+       [](verdict_t& m) {
+         m.observable[2] = 1;
+         m.stddev[2] = 0.1;
+         m.stddev_added[2] = 0.2;
+       }},
+      {"good although nothing says how well it is known",
+       [](verdict_t& m) {
+         m.verdict = "good";
+         m.has_goal = 0;
+         m.observable[2] = 1;
        }},
       {"fit", [](verdict_t& m) { m.fit.rotation_95 = -1; }},
       {"fit is not finite",

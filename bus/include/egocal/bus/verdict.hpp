@@ -19,9 +19,12 @@ inline constexpr std::size_t max_findings = 32;
 /// Which problem was judged, the answer to it, and the poses that it was judged by.
 struct Judged {
   DualQuaternion T_a_b;
-  std::int64_t begin_us = 0, end_us = 0;  ///< first and last pose; findings count their time from the first
-  std::int64_t poses = 0;                 ///< of the slower stream, that the fit is about; 0: not measured
-  Observability observability{};          ///< of the answer, as_judged()
+  std::int64_t begin_us = 0, end_us = 0;    ///< first and last pose; findings count their time from the first
+  std::int64_t poses = 0;                   ///< of the slower stream, that the fit is about; 0: not measured
+  Observability observability = unknown();  ///< of the answer, as_judged()
+
+  /// No direction is observable.
+  static Observability unknown();
 };
 
 /// Names, session, numbers and sender are the caller's to fill in. The tenths of the fit do not travel.
