@@ -56,6 +56,7 @@ std::string DiagnosedPair::take_problem(std::int64_t mono_us) {
   const problem_t& message = received->message;
   const bool same_session = known.session == message.session;
   if (!same_session || !newest || newest->message.seq != message.seq) newest_mono_us = mono_us;
+  sample.set_time_offset(message.time_offset);
   if (!same_session) {
     begin_session(message);
   } else if (!newest) {
@@ -64,7 +65,6 @@ std::string DiagnosedPair::take_problem(std::int64_t mono_us) {
   }
   known.session = message.session;
   known.matched = message.matched;
-  sample.set_time_offset(message.time_offset);
   clock.add(message.utime, to_microseconds(message.time_offset));
   newest = std::move(received);
   return refused;

@@ -67,8 +67,10 @@ void DriveSample::begin_anew(Side side) {
 }
 
 void DriveSample::begin_session(std::int64_t time_us) {
-  for (Trajectory* poses : {&state_.a, &state_.b})
-    std::erase_if(*poses, [time_us](const StampedPose& pose) { return pose.time_us < time_us; });
+  for (const Side side : {Side::a, Side::b})
+    std::erase_if(of(side), [time_us, offset = offset_of(side)](const StampedPose& pose) {
+      return pose.time_us + offset < time_us;
+    });
   state_.begun_anew.reset();
   state_.origin_us.reset();
   for (const Side side : {Side::a, Side::b})

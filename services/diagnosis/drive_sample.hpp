@@ -47,7 +47,7 @@ class DriveSample {
   /// The time of the stream ran backwards: its earlier poses belong to another timeline. So do those of the
   /// other stream, unless that one has just started again itself.
   void begin_anew(Side side);
-  /// A session starts at this time: drops older poses.
+  /// A session starts at this time on the clock of a: drops older poses.
   void begin_session(std::int64_t time_us);
   /// Offset added to the stamps of b [s], so that both streams are thinned at the same instants.
   void set_time_offset(double seconds);

@@ -256,6 +256,8 @@ TEST(Problem, OutOfRangeIsRefused) {
     return !to_problem(message);
   };
   EXPECT_FALSE(refused([](problem_t&) {}));
+  EXPECT_FALSE(refused([](problem_t& m) { m.time_offset = -1.7e9; })) << "since the start of a machine";
+  EXPECT_TRUE(refused([](problem_t& m) { m.time_offset = -4.2e9; }));
   EXPECT_TRUE(refused([](problem_t& m) { m.blocks[1].q[0] = std::nan(""); }));
   EXPECT_TRUE(refused([](problem_t& m) { m.blocks[1].q[0] = -1; }));
   EXPECT_TRUE(refused([](problem_t& m) { m.blocks[1].q[1] = 1e9; }));

@@ -124,5 +124,19 @@ TEST(DriveSample, KeepsOnlyTheNewSession) {
   }
 }
 
+/// The clock of b counts from the start of a machine: all of its poses were dropped.
+TEST(DriveSample, ASessionBeginsByTheClockOfA) {
+  constexpr double offset = 1.5e9;
+  DriveSample sample;
+  for (int i = 0; i < 100; ++i) {
+    sample.push(Side::a, at(0.1 * i + offset));
+    sample.push(Side::b, at(0.1 * i));
+  }
+  sample.set_time_offset(offset);
+  sample.begin_session(at(5 + offset).time_us);
+  for (const Side side : {Side::a, Side::b}) EXPECT_EQ(sample.poses(side).size(), 50u);
+  EXPECT_EQ(sample.poses(Side::b).front().time_us, at(5).time_us);
+}
+
 }  // namespace
 }  // namespace egocal::services::test_drive_sample

@@ -32,8 +32,9 @@ inline constexpr double unit_tolerance = 0.01;
 /// Sequence numbers and counts: doubles hold them exactly, and adding to them does not overflow.
 inline constexpr std::int64_t largest_count = std::int64_t{1} << 53;
 
-inline constexpr Range max_gap{1e-3, 3600};          ///< [s]
-inline constexpr Range time_offset{-1e9, 1e9};       ///< [s]
+inline constexpr Range max_gap{1e-3, 3600};  ///< [s]
+/// [s] Between two times of the wire: one clock may count from 1970, the other from the start of a machine.
+inline constexpr Range time_offset{-1e-6 * latest_us, 1e-6 * latest_us};
 inline constexpr Range t_no_fail{0, 1e6};            ///< [s]
 inline constexpr Range stride{1, 10'000};            ///< steps of the slower stream
 inline constexpr Range rotation_weight{0, 1e12};     ///< Balance::rotation
