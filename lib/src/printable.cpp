@@ -31,6 +31,18 @@ std::size_t character_length(std::string_view text) {
   return overlong || surrogate || too_large ? 0 : length;
 }
 
+/// Whether a character breaks the line, turns the direction of what follows, or cannot be seen: one text
+/// could look like another. Joiners are letters' business, and stay.
+bool misleads(std::string_view character) {
+  // U+061C; U+200B, E, F; U+2028 to 202E; U+2060 to 206F; U+FEFF
+  if (character == "\xd8\x9c" || character == "\xef\xbb\xbf") return true;
+  if (character.size() != 3 || byte_at(character, 0) != 0xe2) return false;
+  const unsigned char second = byte_at(character, 1), third = byte_at(character, 2);
+  if (second == 0x81) return third >= 0xa0 && third <= 0xaf;
+  return second == 0x80 &&
+         (third == 0x8b || third == 0x8e || third == 0x8f || (third >= 0xa8 && third <= 0xae));
+}
+
 }  // namespace
 
 std::string printable(const std::string& text, std::size_t max_length) {
@@ -43,7 +55,7 @@ std::string printable(const std::string& text, std::size_t max_length) {
     const bool control = first < 0x20 || first == 0x7f || (first == 0xc2 && byte_at(rest, 1) < 0xa0);
     if (length == 0)
       out += '?';
-    else if (control)
+    else if (control || misleads(rest.substr(0, length)))
       out += ' ';
     else
       out += rest.substr(0, length);

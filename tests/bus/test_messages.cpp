@@ -298,6 +298,9 @@ TEST(Text, IsMadePrintable) {
                       "2J"),
             " 2J");
   EXPECT_EQ(printable("abc\xc3\xbc", 4), "abc") << "cut inside a character";
+  // breaks of the line, the other direction, nothing to be seen
+  EXPECT_EQ(printable("a\u2028b\u202ec\u2066d\u200be\ufefff\u061cg"), "a b c d e f g");
+  EXPECT_EQ(printable("\u200c\u200d\u2010\u2027\u202f\u2070"), "\u200c\u200d\u2010\u2027\u202f\u2070");
 }
 
 }  // namespace
