@@ -136,7 +136,7 @@ TEST_F(Commands, RangesNameTheirOption) {
         {"--max-gap 1e-9", "--max-gap: expected 0.001 to 3600, got '1e-9'"},
         {"--max-gap 1e5", "--max-gap: expected 0.001 to 3600, got '1e5'"},
         {"--stride 20000", "--stride: expected 1 to 10000, got '20000'"},
-        {"--time-offset 2e9", "--time-offset: expected -1000000000 to 1000000000, got '2e9'"},
+        {"--time-offset 5e9", "--time-offset: expected -4102444800 to 4102444800, got '5e9'"},
         {"--scale 0", "--scale: expected 1e-09 to 1000000000, got '0'"},
         {"--rate 1e-300", "--rate: expected at least 0.001, got '1e-300'"},
         {"--weights 1e-300:1e-300", "and T from 1e-12 to 1e12, got '1e-300:1e-300'"},
