@@ -8,6 +8,7 @@
 
 #include "calibration/inverted_streams.hpp"
 #include "calibration/no_motions.hpp"
+#include "calibration/rounded_streams.hpp"
 #include "calibration/scale_verdict.hpp"
 #include "calibration/steps.hpp"
 #include "diagnosis/explanations/times/clock_check.hpp"
@@ -36,6 +37,7 @@ using detail::no_motions_in_words;
 using detail::put_scale;
 using detail::scale_options;
 using detail::solved;
+using detail::with_rounding;
 
 namespace {
 
@@ -139,6 +141,7 @@ Calibration calibrate_streams(const Trajectory& a, const Trajectory& given_b,
   std::optional<Trajectory> corrected;
   if (time_offset) corrected = on_clock_of_a(*time_offset, given_b);
   const Trajectory& b = corrected ? *corrected : given_b;
+  pairing_options = with_rounding(std::move(pairing_options), a, b);
   std::optional<MotionPairing> pairing_of_all;
   std::optional<Foresight> foresight;
   const auto pair = [&] { pairing_of_all.emplace(paired(pairing_options, a, b, beside)); };
@@ -287,6 +290,8 @@ Calibration calibrate(const Trajectory& a, const Trajectory& b, const Calibratio
   if (!as_read(options.read_a) || !as_read(options.read_b)) {
     CalibrationOptions rest = options;
     rest.read_a = rest.read_b = {};
+    if (options.read_a.scale == 1 && options.read_b.scale == 1)
+      rest.pairing = with_rounding(std::move(rest.pairing), a, b);  // an inverse pose has more digits
     const Trajectory read_a = reread(a, options.read_a), read_b = reread(b, options.read_b);
     Calibration result = calibrate(read_a, read_b, rest, beside);
     // a scale that is looked for is another question, and its lengths are not those of these streams

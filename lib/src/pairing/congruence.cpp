@@ -191,10 +191,12 @@ void estimate_next(CongruenceScale& scale, const CongruenceOptions& options) {
   if (stood_or_stands(before, in_turn[turn]->moving, options)) estimate(scale, options);
 }
 
+/// floor: what rounding alone makes of it. Where both streams are rounded alike most differences are zero,
+/// and the estimate says nothing about the others. more: that is added.
 double sigmas(const Seen& seen, const TypicalDifference& typical, double floor,
-              const CongruenceOptions& options) {
+              const CongruenceOptions& options, double more = 0) {
   if (typical.newest.size() < options.first_estimate) return 0;
-  return seen.difference / (typical.constant + typical.growing * seen.size + floor);
+  return seen.difference / (std::max(typical.constant, floor) + typical.growing * seen.size + more);
 }
 
 /// Whether it turns far more than the larger motions seen: the first turn in place after a straight road.
@@ -206,9 +208,17 @@ bool turns_unlike_those_seen(const MotionDifference& d, double steps, const Cong
 /// Nor is it known how the noise of such a turn grows.
 double sigmas_of_angle(const MotionDifference& d, double steps, const CongruenceScale& scale,
                        const CongruenceOptions& options) {
-  double floor = options.angle_floor;
-  if (turns_unlike_those_seen(d, steps, scale, options)) floor += options.noise_of_turns * d.angle.size;
-  return sigmas(d.angle, scale.angle, floor, options);
+  const bool unlike = turns_unlike_those_seen(d, steps, scale, options);
+  return sigmas(d.angle, scale.angle, options.angle_floor, options,
+                unlike ? options.noise_of_turns * d.angle.size : 0);
+}
+
+/// Rounding turns the axis along which a motion slides, the more the less it turns.
+double sigmas_of_slide(const MotionDifference& d, const CongruenceScale& scale,
+                       const CongruenceOptions& options) {
+  if (!d.turns) return 0;
+  const double floor = options.length_floor + options.angle_floor / d.angle.size * d.slide.size;
+  return sigmas(d.slide, scale.slide, floor, options);
 }
 
 /// A straight road shows the lever arm along the road only; another kind of turn may show all of it.
@@ -258,8 +268,7 @@ double incongruence(const MotionDifference& d, double steps, const CongruenceSca
     if (d.angle.difference > options.gross_angle) return std::numeric_limits<double>::infinity();
     return longer ? unexplained / (options.unknown_noise * d.length.size) : 0;
   }
-  return std::max({sigmas_of_angle(d, steps, scale, options),
-                   d.turns ? sigmas(d.slide, scale.slide, options.length_floor, options) : 0,
+  return std::max({sigmas_of_angle(d, steps, scale, options), sigmas_of_slide(d, scale, options),
                    sigmas({d.length.size, unexplained}, scale.length, options.length_floor, options)});
 }
 

@@ -61,23 +61,55 @@ struct Components {
   }
 };
 
+/// Elements of the rotation matrices that quaternions were made from, as sums and differences of two. That is
+/// done by the scalar part where it is large, and by the largest of the others elsewhere; the matrices were
+/// not quite orthonormal, and the quaternions are up to a factor near one, as above.
+struct Elements {
+  const Trajectory& trajectory;
+
+  bool written_with(std::size_t i, const Digits& digits) const {
+    const QuaternionVector& q = trajectory[i].pose.real;  // w x y z
+    const double step = digits.step(1);
+    Eigen::Index by = 0;
+    if (4 * q[0] * q[0] <= 1) {
+      q.tail<3>().cwiseAbs().maxCoeff(&by);
+      ++by;
+    }
+    const QuaternionVector products = 4 * q[by] * q;
+    for (int more = -4; more <= 4; ++more) {  // steps: one of each of three elements, and one of the others
+      const double factor = (std::round(products[by] / step) + more) * step / products[by];
+      if (std::all_of(products.begin(), products.end(),
+                      [&](double x) { return is_multiple(factor * x, step, 1); }))
+        return true;
+    }
+    return false;
+  }
+};
+
 template <typename Numbers>
-Digits digits_of(const Numbers& numbers, const WrittenDigitsOptions& options) {
+bool all_have(const Digits& digits, const Numbers& numbers, const WrittenDigitsOptions& options) {
   const std::size_t n = numbers.trajectory.size();
   const std::size_t each = std::max<std::size_t>(1, n / options.looked_at);
-  const auto all_have = [&](const Digits& digits) {
-    std::size_t looked = 0, others = 0;
-    const auto most_others =
-        static_cast<std::size_t>(options.most_others * static_cast<double>(std::min(n, options.looked_at)));
-    for (std::size_t i = 0; i < n; i += each, ++looked)
-      if (!numbers.written_with(i, digits) && ++others > most_others) return false;
-    return looked >= options.fewest;
-  };
-  Digits result;
-  for (int count = 1; count <= options.most_digits && result.decimals == 0; ++count)
-    if (all_have({count, 0})) result.decimals = count;
+  std::size_t looked = 0, others = 0;
+  const auto most_others =
+      static_cast<std::size_t>(options.most_others * static_cast<double>(std::min(n, options.looked_at)));
+  for (std::size_t i = 0; i < n; i += each, ++looked)
+    if (!numbers.written_with(i, digits) && ++others > most_others) return false;
+  return looked >= options.fewest;
+}
+
+template <typename Numbers>
+int decimals_of(const Numbers& numbers, const WrittenDigitsOptions& options) {
+  for (int count = 1; count <= options.most_digits; ++count)
+    if (all_have({count, 0}, numbers, options)) return count;
+  return 0;
+}
+
+template <typename Numbers>
+Digits digits_of(const Numbers& numbers, const WrittenDigitsOptions& options) {
+  Digits result{decimals_of(numbers, options), 0};
   for (int count = 1; count <= options.most_digits && result.significant == 0; ++count)
-    if (all_have({0, count})) result.significant = count;
+    if (all_have({0, count}, numbers, options)) result.significant = count;
   return result;
 }
 
@@ -85,6 +117,11 @@ Digits digits_of(const Numbers& numbers, const WrittenDigitsOptions& options) {
 
 Written written(const Trajectory& trajectory, const WrittenDigitsOptions& options) {
   return {digits_of(Coordinates{trajectory}, options), digits_of(Components{trajectory}, options)};
+}
+
+Digits digits_of_matrices(const Trajectory& trajectory, const WrittenDigitsOptions& options) {
+  // decimals alone: each is a sum of two elements, which may have digits of other sizes
+  return {decimals_of(Elements{trajectory}, options), 0};
 }
 
 }  // namespace egocal::detail

@@ -33,4 +33,8 @@ struct Written {
 /// Unknown where the poses have more digits, or are few.
 Written written(const Trajectory& trajectory, const WrittenDigitsOptions& options = {});
 
+/// Decimals of the rotation matrices that the quaternions were made from; unknown where they are of no such
+/// matrices, have more decimals, or are few.
+Digits digits_of_matrices(const Trajectory& trajectory, const WrittenDigitsOptions& options = {});
+
 }  // namespace egocal::detail
