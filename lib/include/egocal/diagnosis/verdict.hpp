@@ -62,9 +62,9 @@ enum class MountingChange {
 /// Something found in the streams: another explanation that fits better or as well, or a fault.
 struct Finding {
   /// inverted_a|_b|_both, quaternion_order_a|_b|_both, scale, units, scale_change, clock_offset, clock_drift,
-  /// time_unit, stamps_a|_b, axes_a|_b|_both, late_positions_a|_b, turning_scale_a|_b, plane_a|_b,
-  /// mount_moved, unrelated, frozen_a|_b, missing_a|_b|_both, flat_a|_b|_both, same_stream, samples,
-  /// wrong_samples, undersampled_a|_b, held_a|_b, mixed_frames_a|_b, odometry, nominal, filled_a|_b,
+  /// time_unit, stamps_a|_b, axes_a|_b|_both, late_positions_a|_b, turning_scale_a|_b, turning_drift_a|_b,
+  /// plane_a|_b, mount_moved, unrelated, frozen_a|_b, missing_a|_b|_both, flat_a|_b|_both, same_stream,
+  /// samples, wrong_samples, undersampled_a|_b, held_a|_b, mixed_frames_a|_b, odometry, nominal, filled_a|_b,
   /// reversed_steps, clock_step, too_little_motion. docs/findings.md says what each means.
   std::string code;
   bool certain = false;       ///< it fits clearly better; otherwise both remain possible
@@ -75,11 +75,11 @@ struct Finding {
   /// mount_moved, scale_change (but of lengths that are lost in turns), unrelated, filled_a|_b, clock_step,
   /// and inverted_both where the mounting would have moved at that time: since the first pose of a [s].
   std::optional<double> time;
-  std::optional<double>
-      value;  ///< scale and units: factor of b's lengths; clock_offset: added to b [s];
-              ///< clock_step: how much more is added to b from then on [s];
-              ///< clock_drift: rate of b's clock against a's [s/s]; late_positions_a|_b:
-              ///< how late they are [s]; time_unit, turning_scale_a|_b: factor; held_a|_b: new ones a second
+  std::optional<double> value;  ///< scale and units: factor of b's lengths; clock_offset: added to b [s];
+                                ///< clock_step: how much more is added to b from then on [s];
+                                ///< clock_drift: rate of b's clock against a's [s/s]; late_positions_a|_b:
+                                ///< how late they are [s]; time_unit, turning_scale_a|_b: factor; held_a|_b:
+                                ///< new ones a second; turning_drift_a|_b: the rate [rad/s]
   FindingWords words{};                    ///< of message and remedy, for those who name the streams
   std::optional<MountingChange> change{};  ///< mount_moved: how, where that is known
 };

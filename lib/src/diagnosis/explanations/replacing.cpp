@@ -11,6 +11,7 @@
 #include "diagnosis/explanations/contents/turned_lever_arm.hpp"
 #include "diagnosis/explanations/lengths/not_a_move.hpp"
 #include "diagnosis/explanations/lengths/unlike_columns.hpp"
+#include "diagnosis/explanations/turning/turning_drift.hpp"
 #include "diagnosis/explanations/turning/turning_scale.hpp"
 #include "diagnosis/mount/exchanged_streams.hpp"
 #include "diagnosis/mount/large_move.hpp"
@@ -95,6 +96,7 @@ const std::vector<Finding>& WrongStream::best() {
     if (!found.empty() && (best.empty() || best_improvement(best) < best_improvement(found)))
       best = std::move(found);
   };
+  take(turning_drift(evidence_.instants, given, options_));
   if (std::optional<Finding> arm = turned_lever_arm(evidence_.instants, given, options_))
     take({*std::move(arm)});
   const bool by_a_row = !contents().empty() && contents().front().code.starts_with("late_positions_");

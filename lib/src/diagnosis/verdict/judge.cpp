@@ -160,13 +160,19 @@ bool wrong_nominal(const Finding& finding) {
   return finding.code == "nominal";
 }
 
+/// Rotations that drift are wrong a little more each second: the answer hardly is while the drive turns both
+/// ways, however well the motions fit without that.
+bool drifts(const Finding& finding) {
+  return finding.code.starts_with("turning_drift_");
+}
+
 /// The streams mean something else than was taken: whatever the answer is, it is not theirs.
 bool misread(const Finding& finding) {
   return finding.certain && !wrong_nominal(finding) && finding.code != "scale" &&
          finding.code != "clock_offset" && finding.code != "clock_drift" && finding.code != "clock_step" &&
          finding.code != "mount_moved" && finding.code != "scale_change" &&
          !finding.code.starts_with("late_positions_") && !finding.code.starts_with("held_") &&
-         !stream_fault(finding) && !undersampling(finding) && !shows_too_little(finding);
+         !drifts(finding) && !stream_fault(finding) && !undersampling(finding) && !shows_too_little(finding);
 }
 
 /// A clock that is off by little, which noise alone may show: half a minute on rails knows x to metres, and
@@ -250,7 +256,7 @@ Opinion of_findings(const Diagnosis& diagnosis, const Answered& answered, const 
     else if (stream_fault(finding))
       verdict = finding.code.starts_with("frozen_") ? Verdict::good : Verdict::doubtful;
     else if (misread(finding) || refutes(finding, far, options) || apart > 1 ||
-             (certain && finding.improvement > options.overwhelming))
+             (certain && finding.improvement > options.overwhelming && !drifts(finding)))
       verdict = Verdict::contradictory;
     else if ((finding.code == "mount_moved" && !slight_move(finding, far, diagnosis.findings)) ||
              (finding.code == "scale_change" && !slight_scale_change(finding, far)) || clock_step(finding) ||
