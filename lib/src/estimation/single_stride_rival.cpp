@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "estimation/misfit.hpp"
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "solvers/minimiser.hpp"
 #include "uncertainty/frame_a.hpp"
 
@@ -13,23 +14,36 @@ namespace egocal::detail {
 
 namespace {
 
+/// Whether a difference is at most this many standard deviations, and rounding, in each principal direction
+/// of its covariance. Unlike the axes of a's frame, these turn with it.
+bool within(const Eigen::Vector3d& difference, const Eigen::Matrix3d& covariance, double sigmas,
+            double rounding) {
+  const SymmetricEigen<3> principal = symmetric_eigen<3>(covariance);
+  for (int i = 0; i < 3; ++i) {
+    const double stddev = std::sqrt(std::max(0.0, principal.values[i]));
+    if (std::abs(principal.vectors.col(i).dot(difference)) > sigmas * stddev + rounding) return false;
+  }
+  return true;
+}
+
 /// Whether the sum's answer is where motions of one stride, judged one by one,
 /// allow it to be. shorter: the sum's motions are shorter than those.
 bool agree(const SpreadByPoses& sum, const SpreadByPoses& single, bool shorter, const SeenDirections& seen,
            const WeightingOptions& options) {
-  const auto difference = frame_a_difference(single.T_a_b, sum.T_a_b);
-  double translation = 0, rotation = 0;
-  for (std::size_t i = 0; i < 6; ++i) {
-    if (!seen[i]) continue;
-    const double here = std::abs(difference[static_cast<Eigen::Index>(i)]);
-    const double least =
-        i < 3 ? options.residuals.least_translation_spread : options.residuals.least_rotation_spread;
-    if (shorter && here > options.contradicts * single.stddev[i] + least) return false;
-    (i < 3 ? translation : rotation) += here * here;
+  Vector6d difference = frame_a_difference(single.T_a_b, sum.T_a_b);
+  for (std::size_t i = 0; i < 6; ++i)
+    if (!seen[i]) difference[static_cast<Eigen::Index>(i)] = 0;
+  for (const bool rotation : {false, true}) {
+    const int first = rotation ? 3 : 0;
+    const Eigen::Vector3d part = difference.segment<3>(first);
+    const double rounding =
+        rotation ? options.residuals.least_rotation_spread : options.residuals.least_translation_spread;
+    const double spread = rotation ? single.rotation : single.translation;
+    if (part.norm() > options.agreement * spread + rounding) return false;
+    const Eigen::Matrix3d covariance = single.covariance.block<3, 3>(first, first);
+    if (shorter && !within(part, covariance, options.contradicts, rounding)) return false;
   }
-  return std::sqrt(translation) <=
-             options.agreement * single.translation + options.residuals.least_translation_spread &&
-         std::sqrt(rotation) <= options.agreement * single.rotation + options.residuals.least_rotation_spread;
+  return true;
 }
 
 /// The part of the neighbouring steps' weight that was taken off as their

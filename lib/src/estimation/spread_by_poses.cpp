@@ -29,16 +29,18 @@ SpreadByPoses spread_by_poses(const Problem& problem, const SeenDirections& seen
   std::vector<std::array<double, 2>> squares;
   std::array<double, 2> sums{};
   for (const auto& difference : differences) {
+    Vector6d shown = difference - mean;
+    for (std::size_t i = 0; i < 6; ++i)
+      if (!seen[i]) shown[static_cast<Eigen::Index>(i)] = 0;
+    result.covariance += (blocks - 1) / blocks * (shown * shown.transpose());
     squares.emplace_back();
     for (std::size_t i = 0; i < 6; ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       const double square = std::pow(difference[k] - mean[k], 2);
-      result.stddev[i] += square * (blocks - 1) / blocks;
       if (seen[i]) squares.back()[i < 3 ? 0 : 1] += square;
     }
     for (const std::size_t part : {0u, 1u}) sums[part] += squares.back()[part];
   }
-  for (double& stddev : result.stddev) stddev = std::sqrt(stddev);
   result.translation = std::sqrt(sums[0] * (blocks - 1) / blocks);
   result.rotation = std::sqrt(sums[1] * (blocks - 1) / blocks);
   for (const std::size_t part : {0u, 1u}) result.score += sums[part] > 0 ? 0.5 * std::log(sums[part]) : 0;
@@ -55,7 +57,10 @@ void SpreadByPoses::widen(double of_rotation, double of_translation) {
   if (translation > 0) score += std::log(of_translation);
   rotation *= of_rotation;
   translation *= of_translation;
-  for (std::size_t i = 0; i < 6; ++i) stddev[i] *= i < 3 ? of_translation : of_rotation;
+  covariance.topRows<3>() *= of_translation;
+  covariance.leftCols<3>() *= of_translation;
+  covariance.bottomRows<3>() *= of_rotation;
+  covariance.rightCols<3>() *= of_rotation;
 }
 
 double standard_error(const SpreadByPoses& x, const SpreadByPoses& y) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "egocal/problem/problem.hpp"
+#include "problem/tangent.hpp"
 
 namespace egocal::detail {
 
@@ -17,12 +18,12 @@ SeenDirections seen_directions(const Problem& problem);
 /// Scatter of the answers when blocks of instants are omitted, each with all motions that have an end in it.
 /// Over the directions that the motions show.
 struct SpreadByPoses {
-  DualQuaternion T_a_b;            ///< minimiser of (18) over all
-  double score = 0;                ///< sum of the logarithms of rotation's and translation's spread
-  double rotation = 0;             ///< [rad]
-  double translation = 0;          ///< [m]
-  std::array<double, 6> stddev{};  ///< of each direction [m, rad]
-  std::vector<double> influence;   ///< of each block on the score
+  DualQuaternion T_a_b;                    ///< minimiser of (18) over all
+  double score = 0;                        ///< sum of the logarithms of rotation's and translation's spread
+  double rotation = 0;                     ///< [rad]
+  double translation = 0;                  ///< [m]
+  Matrix6d covariance = Matrix6d::Zero();  ///< of (dt, dtheta) in frame a [m, rad], zero where not seen
+  std::vector<double> influence;           ///< of each block on the score
 
   /// Multiplies the spreads.
   void widen(double of_rotation, double of_translation);

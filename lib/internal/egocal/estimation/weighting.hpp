@@ -74,8 +74,8 @@ struct WeightingOptions {
   /// in rotation and in translation. Motions of one stride are judged one by one; the sum omits whole
   /// blocks, and many short stretches of wrong poses pass (tests/lib/test_outliers.cpp: 3 deg off).
   double agreement = 3;
-  /// The same in each direction alone (SelectionOptions::contradicts): shorter motions may have been refused
-  /// for one of them.
+  /// The same in each principal direction alone, of translation and of rotation
+  /// (SelectionOptions::contradicts): shorter motions may have been refused for one of them.
   double contradicts = 4;
   /// Exception to all of the above: the residuals of one answer are this many times those of the other one.
   /// They are compared on the motions of the single stride, as the product of the mean squared residuals of
