@@ -51,7 +51,7 @@ Answered answered_of(DiagnosedPair& pair, const Answer& answer) {
   answered.seconds = to_seconds(message.utime - message.session);
   if (pair.unscaled)
     if (const ScaleSolution* solution = pair.scale.solution(pair.config.a, pair.config.b, message.session))
-      answered.scale_stddev = with_spread_of_scale({}, problem, *solution);
+      answered.scale_stddev = spread_by_scale(answer.observability, problem, *solution);
   return answered;
 }
 

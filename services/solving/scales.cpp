@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solving/scales.hpp"
 
+#include <utility>
+
 #include "egocal/bus/channels.hpp"
 #include "egocal/bus/scale.hpp"
 
@@ -35,8 +37,8 @@ Answer ScaleDesk::with_spread(Answer answer, const ReceivedProblem& received) co
   for (const auto& pair : pairs_)
     if (pair->config.a == received.message.sensor_a && pair->config.b == received.message.sensor_b &&
         pair->last && pair->last->session == received.message.session)
-      answer.observability.stddev =
-          with_spread_of_scale(answer.observability.stddev, received.problem, pair->solution);
+      answer.observability =
+          with_spread_of_scale(std::move(answer.observability), received.problem, pair->solution);
   return answer;
 }
 

@@ -236,7 +236,7 @@ TEST(Scale, TheExtrinsicsStandardDeviationContainsThatOfTheScale) {
     for (const ScaleStatistics& block : blocks) problem.blocks.push_back(at_scale(block, solution.scale));
     const Answer answer = solve(problem, Method::dual);
     const std::array<double, 6>& fixed = answer.observability.stddev;
-    const std::array<double, 6> joint = with_spread_of_scale(fixed, problem, solution);
+    const std::array<double, 6> joint = with_spread_of_scale(answer.observability, problem, solution).stddev;
     const Eigen::Vector3d error = to_pose(answer.T_a_b).translation - to_pose(T).translation;
     for (std::size_t i = 0; i < 3; ++i) {
       EXPECT_GE(joint[i], fixed[i]);
@@ -250,6 +250,35 @@ TEST(Scale, TheExtrinsicsStandardDeviationContainsThatOfTheScale) {
   EXPECT_LT(without, 0.85 * directions);
   EXPECT_GT(with, 0.92 * directions) << without << " without it";
   EXPECT_LT(with, 0.99 * directions);
+}
+
+/// A head that turns about one point: each scale of b has a lever arm of its own.
+TEST(Scale, WithoutItTheLeverArmIsNotObservable) {
+  Random random(17);
+  const DualQuaternion T_a = testing::displacement({0.1, 0.2, 0.3}, {0.1, 0.02, 0}),
+                       T_b = testing::displacement({-0.3, 0.2, 0.1}, {0, 0.2, -0.1});
+  std::vector<MotionPair> pairs;
+  for (int i = 0; i < 400; ++i) {
+    const DualQuaternion turn = testing::displacement(random.normal3(0.2), {0, 0, 0});
+    const auto noise = [&] { return testing::displacement(random.normal3(1e-4), random.normal3(1e-5)); };
+    MotionPair pair;
+    pair.a = conjugate(T_a) * turn * T_a * noise();
+    pair.b = scaled(conjugate(T_b) * turn * T_b, 0.4) * noise();
+    pairs.push_back(pair);
+  }
+  CalibrationOptions options;
+  options.estimate_scale = true;
+  options.diagnosis.goal = GoalOptions{};
+  const Calibration calibration = calibrate(pairs, options);
+  ASSERT_TRUE(calibration.scale && !calibration.scale->observable);
+  EXPECT_EQ(calibration.verdict, Verdict::incomplete);
+  EXPECT_NE(calibration.reason.find("do not show the scale"), std::string::npos) << calibration.reason;
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(calibration.observability.observable[i], i >= 3) << i;
+    EXPECT_EQ(std::isinf(calibration.observability.stddev[i]), i < 3) << i;
+  }
+  ASSERT_TRUE(calibration.goal);
+  EXPECT_FALSE(calibration.goal->reached);
 }
 
 TEST(Scale, TheSensitivityIsTheSlopeOfTheExtrinsicOverTheScale) {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <string>
+#include <utility>
 
 #include "egocal/scale/solve_scale.hpp"
 
@@ -46,13 +48,16 @@ void put_scale(const std::optional<ScaleSolution>& estimate, double scale, const
   result.scale = estimate;
   result.scale_applied = scale;
   if (estimate)
-    result.observability.stddev =
-        with_spread_of_scale(result.observability.stddev, result.problem, *estimate);
+    result.observability = with_spread_of_scale(std::move(result.observability), result.problem, *estimate);
   if (estimate && estimate->at_limit) return put_end_of_range(*estimate, options, result);
-  if (!estimate || (estimate->observable && estimate->certified) || result.verdict != Verdict::good) return;
+  if (!estimate || (estimate->observable && estimate->certified) || result.verdict > Verdict::incomplete)
+    return;
+  const bool good = result.verdict == Verdict::good;
+  if (estimate->observable && !good) return;
+  const std::string reason = estimate->observable ? "The scale is not proven to be the best one."
+                                                  : "The motions do not show the scale.";
+  result.reason = good ? reason : reason + " " + result.reason;
   result.verdict = Verdict::incomplete;
-  result.reason = estimate->observable ? "The scale is not proven to be the best one."
-                                       : "The motions do not show the scale.";
 }
 
 }  // namespace egocal::detail

@@ -32,7 +32,7 @@ Answered answered(const Calibration& calibration, Problem single, const std::opt
   result.problem = std::move(single);
   result.stride = calibration.choice.stride;
   result.minimised = calibration.problem;
-  if (scale) result.scale_stddev = with_spread_of_scale({}, calibration.problem, *scale);
+  if (scale) result.scale_stddev = spread_by_scale(calibration.observability, calibration.problem, *scale);
   return result;
 }
 

@@ -314,8 +314,8 @@ ScaleSolution solve_scale(std::span<const ScaleStatistics> given, const ScaleOpt
   result.attenuation = options.noise == ScaleNoise::both ? 0.5 * share : share;
   // below 1e-9 the curvature is the rounding of the differences that it is made of
   result.observable = !result.at_limit && result.observability > 1e-9 && share <= options.most_noise_share;
-  if (!result.observable) return result;
   result.sensitivity = over_scale.sensitivity;
+  if (!result.observable) return result;
   const double spread = detail::spread_of_scale(blocks, form, joint, options.least_blocks);
   // evenly likely anywhere within the attenuation
   result.stddev =
@@ -323,10 +323,8 @@ ScaleSolution solve_scale(std::span<const ScaleStatistics> given, const ScaleOpt
   return result;
 }
 
-std::array<double, 6> with_spread_of_scale(const std::array<double, 6>& stddev, const Problem& problem,
-                                           const ScaleSolution& solution) {
-  const double relative = solution.stddev / solution.scale;
-  if (!std::isfinite(relative)) return stddev;
+std::array<double, 6> spread_by_scale(const Observability& stated, const Problem& problem,
+                                      const ScaleSolution& solution) {
   Eigen::Vector3d shift(solution.sensitivity[0], solution.sensitivity[1], solution.sensitivity[2]);
   Eigen::Vector3d turn(solution.sensitivity[3], solution.sensitivity[4], solution.sensitivity[5]);
   if (problem.mode == Mode::planar) {
@@ -334,12 +332,27 @@ std::array<double, 6> with_spread_of_scale(const std::array<double, 6>& stddev, 
     shift = R * shift;
     turn = R * turn;
   }
-  std::array<double, 6> result = stddev;
+  const double relative = solution.stddev / solution.scale;
+  std::array<double, 6> result{};
   for (std::size_t i = 0; i < 6; ++i) {
-    const double per = i < 3 ? shift[static_cast<Eigen::Index>(i)] : turn[static_cast<Eigen::Index>(i - 3)];
-    if (per != 0) result[i] = std::hypot(stddev[i], per * relative);
+    const double per =
+        std::abs(i < 3 ? shift[static_cast<Eigen::Index>(i)] : turn[static_cast<Eigen::Index>(i - 3)]);
+    if (std::isfinite(relative))
+      result[i] = per * relative;
+    else if (per > stated.stddev[i])
+      result[i] = infinity;
   }
   return result;
+}
+
+Observability with_spread_of_scale(Observability stated, const Problem& problem,
+                                   const ScaleSolution& solution) {
+  const std::array<double, 6> added = spread_by_scale(stated, problem, solution);
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (added[i] > 0) stated.stddev[i] = std::hypot(stated.stddev[i], added[i]);  // else not a bit is changed
+    if (std::isinf(added[i])) stated.observable[i] = false;
+  }
+  return stated;
 }
 
 }  // namespace egocal

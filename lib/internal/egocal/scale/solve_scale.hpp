@@ -8,6 +8,7 @@
 #include "egocal/problem/problem.hpp"
 #include "egocal/scale/scale_solution.hpp"
 #include "egocal/scale/scale_statistics.hpp"
+#include "egocal/uncertainty/directions.hpp"
 
 namespace egocal {
 
@@ -55,11 +56,17 @@ struct ScaleOptions {
 /// and not observable.
 ScaleSolution solve_scale(std::span<const ScaleStatistics> blocks, const ScaleOptions& options = {});
 
-/// Standard deviations of an extrinsic that was solved at the scale of the solution [m, rad, frame a], with
-/// what the scale's own adds to them. problem: its mode and plane of a. Both parts are independent where the
-/// noise is as the weights say: at a minimum, what the scale can take up is no part of the extrinsic's error
-/// at a fixed scale. Unchanged where the scale is not known (the verdict states it).
-std::array<double, 6> with_spread_of_scale(const std::array<double, 6>& stddev, const Problem& problem,
-                                           const ScaleSolution& solution);
+/// What the scale adds to the standard deviations of an extrinsic that was solved at the scale of the
+/// solution [m, rad, frame a]. problem: its mode and plane of a. Both parts are independent where the noise
+/// is as the weights say: at a minimum, what the scale can take up is no part of the extrinsic's error at a
+/// fixed scale. Where the scale is not known: infinite in each direction that a scale larger by a factor e
+/// moves by more than is stated of it, else 0.
+std::array<double, 6> spread_by_scale(const Observability& stated, const Problem& problem,
+                                      const ScaleSolution& solution);
+
+/// The same added to what is stated. A direction is not observable where the spread is infinite: of a head
+/// that turns about one point, each scale explains the motions with a lever arm of its own.
+Observability with_spread_of_scale(Observability stated, const Problem& problem,
+                                   const ScaleSolution& solution);
 
 }  // namespace egocal
