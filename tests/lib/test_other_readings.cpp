@@ -3,11 +3,15 @@
 // Poses that are inverted or in other axes are named, with the option that cures it.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <numbers>
 
 #include "../support/bounded_drive.hpp"
 #include "../support/findings.hpp"
 #include "../support/mistakes.hpp"
+#include "../support/random_motion.hpp"
 #include "egocal/calibrate.hpp"
 
 namespace egocal::test_other_readings {
@@ -43,6 +47,44 @@ TEST(OtherReadings, ScalarFirstAndInvertedIsNamedWithBothOptions) {
         << finding->message;
     EXPECT_EQ(finding->remedy,
               in_a ? "--quaternion-order-a wxyz --invert-a" : "--quaternion-order-b wxyz --invert-b");
+  }
+}
+
+// A map that is bent by a correction spread over the drive, a kilometre from its origin: under inverse poses
+// the motions are long, and a scale of 0.02 hid that they fit no better in metres.
+TEST(OtherReadings, AMapThatIsBentIsNotScalarFirstAndInverted) {
+  testing::Random random(5);
+  const Pose mount_a{rotation_exp({0.1, -0.2, 0.4}), {0.1, 0.2, 0.3}},
+      mount_b{rotation_exp({1, -0.9, 0.4}), {0.14, 0.2, 0.33}};
+  testing::Streams streams;
+  constexpr int poses = 901;
+  for (int i = 0; i < poses; ++i) {
+    const double t = 0.1 * i;
+    const Eigen::Vector3d turn(0.35 * std::sin(0.7 * t) + 0.2 * std::sin(1.9 * t + 1),
+                               0.35 * std::sin(0.9 * t + 2), 0.8 * std::sin(0.31 * t));
+    const Pose rig{rotation_exp(turn),
+                   {0.5 * std::sin(0.4 * t), 0.4 * std::sin(0.53 * t + 1), 0.3 * std::sin(0.67 * t + 2)}};
+    const double bent = 3 * std::numbers::pi / 180 * i / poses;
+    const Pose world =
+        Pose{rotation_exp({0, 0, bent}), {0, 0, 0}} * Pose{Rotation::Identity(), {-1000, 70, 0}};
+    const auto noise = [&] { return Pose{rotation_exp(random.normal3(0.001)), random.normal3(0.002)}; };
+    const auto time_us = std::int64_t{100'000} * i;
+    streams.a.push_back({time_us, canonical_sign(to_dual_quaternion(rig * mount_a * noise()))});
+    streams.b.push_back({time_us, canonical_sign(to_dual_quaternion(world * rig * mount_b * noise()))});
+  }
+  const Calibration calibration = calibrate(streams.a, streams.b);
+  EXPECT_EQ(find(calibration, "quaternion_order_b"), nullptr) << calibration.reason;
+  EXPECT_EQ(find(calibration, "quaternion_order_a"), nullptr) << calibration.reason;
+  EXPECT_GE(calibration.verdict, Verdict::doubtful) << calibration.reason;
+}
+
+// Of a camera without scale as well.
+TEST(OtherReadings, ScalarFirstAndInvertedIsNamedAtAnotherScale) {
+  for (const double scale : {0.1, 20.0}) {
+    testing::Streams streams = drive(Terrain::free);
+    streams.b = testing::scalar_first(testing::inverted(testing::lengthened(streams.b, scale)));
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    EXPECT_NE(find(calibration, "quaternion_order_b"), nullptr) << scale << ": " << calibration.reason;
   }
 }
 

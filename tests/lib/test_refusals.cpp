@@ -3,8 +3,10 @@
 // What calibrate() says where it refuses streams.
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <string>
 
+#include "../support/findings.hpp"
 #include "../support/simulated_drive.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/error.hpp"
@@ -46,6 +48,24 @@ TEST(Refusals, StreamsThatAreTooSlowAreToldOfTheLongestGap) {
   Trajectory later = b;
   for (StampedPose& pose : later) pose.time_us += 1'000'000'000;
   EXPECT_EQ(refusal(a, later, 0.5).find("--max-gap"), std::string::npos);
+}
+
+// A few instants have both poses by chance, too few to judge: a longer drive has no more of them.
+TEST(Refusals, StreamsThatAreTooSlowButForAFewPosesAreToldOfTheLongestGap) {
+  const testing::Streams data =
+      testing::simulated_drive({.terrain = Terrain::free, .poses = 1200, .rate = 10, .seed = 3});
+  const Trajectory a = every(data.a, 0, 10);
+  Trajectory b;
+  for (std::size_t i = 0; i < a.size(); ++i) b.push_back(data.b[10 * i + (i % 30 == 0 ? 0 : 4)]);
+  const Calibration calibration = calibrate(a, b);
+  const Finding* finding = testing::find(calibration, "too_little_motion");
+  ASSERT_NE(finding, nullptr) << calibration.reason;
+  EXPECT_EQ(calibration.verdict, Verdict::incomplete) << calibration.reason;
+  EXPECT_NE(finding->remedy.find("--max-gap SECONDS allows more"), std::string::npos) << finding->remedy;
+  EXPECT_NE(calibration.reason.find("--max-gap"), std::string::npos) << calibration.reason;
+  CalibrationOptions cured;
+  cured.pairing.max_gap = 2.5;
+  EXPECT_EQ(testing::find(calibrate(a, b, cured), "too_little_motion"), nullptr);
 }
 
 // A filter that publishes at 10 Hz what comes once a second.

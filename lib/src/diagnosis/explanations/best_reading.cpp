@@ -47,6 +47,15 @@ std::vector<Ranked> best_readings(const Evidence& evidence, const DiagnosisOptio
   return ranked;
 }
 
+/// Whether a reading fits no worse in metres: far from the origin any residual is a small part of an inverse
+/// motion. A scale that shrinks b hides it, unless the drive as given is not that near at its own best scale.
+bool fits_in_metres(const Evidence& evidence, const Explanation& as_is, const Explanation& scaled) {
+  const Explained& given = evidence.given.explained;
+  return loss_in_metres(given, scaled.explained) <= 0 &&
+         (loss_in_metres(given, as_is.explained) <= 0 ||
+          loss_in_metres(evidence.scaled.explained, scaled.explained) <= -decisive_loss);
+}
+
 /// Two mistakes in one stream, which are looked for where none alone explains the drive: of those that do.
 std::vector<Ranked> combined_readings(const Evidence& evidence, const DiagnosisOptions& options) {
   std::vector<Ranked> readings;
@@ -54,9 +63,7 @@ std::vector<Ranked> combined_readings(const Evidence& evidence, const DiagnosisO
     Explanation here = explained(evidence, candidate.code, candidate.a, candidate.b, options);
     if (here.explained.motions.all.empty()) continue;
     Explanation scaled = with_scale(here, options);
-    // far from the origin any residual is a small part of an inverse motion
-    if (explains(scaled.explained, options) &&
-        loss_in_metres(evidence.given.explained, scaled.explained) <= 0)
+    if (explains(scaled.explained, options) && fits_in_metres(evidence, here, scaled))
       readings.push_back({std::move(here), std::move(scaled)});
   }
   return readings;

@@ -4,15 +4,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "diagnosis/words/wording.hpp"
+#include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/in_words.hpp"
 
 namespace egocal::detail {
+
+namespace {
+
+/// Whether more than half of the poses had no neighbours to interpolate between.
+bool most_in_gaps(const PairingCounts& counts) {
+  std::uint64_t poses = counts.synchronised;
+  for (const std::uint64_t rejected : counts.rejected) poses += rejected;
+  return 2 * counts.rejected[static_cast<std::size_t>(Rejection::gap)] > poses;
+}
+
+}  // namespace
 
 double turning_correlation(const Motions& motions, double part) {
   std::vector<std::size_t> order(motions.all.size());
@@ -55,6 +68,20 @@ Finding too_little_motion(std::size_t motions, const DiagnosisOptions& options) 
                              ? "Only " + counted(motions, "motion") + ": too few to judge the fit."
                              : "The sensors hardly turn: an extrinsic cannot be found from this drive.",
                          "Record a longer drive with turns in different directions.");
+}
+
+void name_longest_gap(const PairingCounts& counts, std::vector<Finding>& findings) {
+  if (!most_in_gaps(counts)) return;
+  for (Finding& finding : findings) {
+    if (finding.code != "too_little_motion") continue;
+    const std::string said =
+        finding.message +
+        format(" %.0f poses were rejected, as their neighbours are further apart than is interpolated over.",
+               static_cast<double>(counts.rejected[static_cast<std::size_t>(Rejection::gap)]));
+    say(finding, said,
+        "If the streams are that slow, {solve}--max-gap SECONDS allows more; otherwise record without gaps.",
+        "");
+  }
 }
 
 Finding turning_in_noise(double correlation) {

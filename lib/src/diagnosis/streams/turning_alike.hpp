@@ -4,10 +4,12 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "diagnosis/motions/motions.hpp"
 #include "egocal/diagnosis/options.hpp"
 #include "egocal/diagnosis/verdict.hpp"
+#include "egocal/pairing/outcome.hpp"
 
 namespace egocal::detail {
 
@@ -17,6 +19,9 @@ double turning_correlation(const Motions& motions, double part = 1);
 
 Finding unrelated(double correlation);
 Finding too_little_motion(std::size_t motions, const DiagnosisOptions& options);
+/// Names the longest gap in the findings of too little motion, where it rejected more than half of the poses:
+/// a longer drive of streams that are slower has as few motions.
+void name_longest_gap(const PairingCounts& counts, std::vector<Finding>& findings);
 Finding turning_in_noise(double correlation);
 
 }  // namespace egocal::detail

@@ -9,6 +9,7 @@
 
 #include "diagnosis/explanations/times/late_positions.hpp"
 #include "diagnosis/goal/goal.hpp"
+#include "diagnosis/streams/turning_alike.hpp"
 #include "diagnosis/verdict/far_off.hpp"
 #include "diagnosis/verdict/nominal.hpp"
 #include "diagnosis/verdict/stability.hpp"
@@ -299,6 +300,7 @@ DiagnosisOptions in_unit_of(const Motions& motions, DiagnosisOptions options) {
 
 void judge(Diagnosis& diagnosis, const Answered& answered, const Misfit& misfit,
            const DiagnosisOptions& options) {
+  name_longest_gap(answered.counts, diagnosis.findings);
   const Opinion fit = of_fit(misfit, answered, options);
   // an answer that is wrong itself, or noise, contradicts a right nominal value
   const auto contradicts_itself = [&](const Finding& one) {

@@ -52,9 +52,10 @@ struct Stretched {
   Order order = orders.front();
   Vector3d factors = Vector3d::Ones();
   Explained explained;
-  Comparison comparison;       ///< with one factor for all columns
-  double gain_over_given = 0;  ///< as other findings state it
-  double unlike = 0;           ///< largest factor over the smallest, as a logarithm
+  Comparison comparison;         ///< with one factor for all columns
+  double gain_over_given = 0;    ///< as other findings state it
+  double unlike = 0;             ///< largest factor over the smallest, as a logarithm
+  std::array<bool, 3> counts{};  ///< columns that UnlikeColumnsOptions::least_part counts
 };
 
 Vector3d in_order(const Vector3d& columns, const Order& order) {
@@ -104,11 +105,61 @@ Stretched fitted(const Motions& given, const std::vector<Change>& changes, Side 
   double least = INFINITY, most = 0;
   for (int k = 0; k < 3; ++k) {
     if (!(ways[k] >= columns.least_part * ways.sum())) continue;
+    result.counts[static_cast<std::size_t>(k)] = true;
     least = std::min(least, std::abs(result.factors[k]));
     most = std::max(most, std::abs(result.factors[k]));
   }
   if (most > 0) result.unlike = std::log(most / least);
   return result;
+}
+
+/// Squared residual of each motion in the columns as the file has them: what the other stream says they
+/// changed by, in parts of their sizes.
+std::vector<double> left_in_columns(const Explained& explained, const std::vector<Change>& changes,
+                                    const Stretched& found, const Order& order, const Vector3d& factors) {
+  const Pose T = to_pose(explained.fit.T);
+  const Matrix3d R = T.rotation.toRotationMatrix();
+  const Vector3d sizes = sizes_of(changes, order);
+  std::vector<double> squares;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const Motion& motion = explained.motions.all[i];
+    const Vector3d by_arm = motion.R_a * T.translation - T.translation;
+    const Vector3d by_other = found.side == Side::a ? Vector3d(R * motion.t_b - by_arm)
+                                                    : Vector3d(R.transpose() * (motion.t_a + by_arm));
+    const Vector3d of_file = in_order(changes[i].columns, order);
+    const Vector3d there = changes[i].back.transpose() * by_other;
+    double square = 0;
+    for (int k = 0; k < 3; ++k) {
+      if (!found.counts[static_cast<std::size_t>(k)]) continue;
+      const double left = (there[k] / factors[k] - of_file[k]) / sizes[k];
+      square += left * left;
+    }
+    squares.push_back(square);
+  }
+  return squares;
+}
+
+/// Mean logarithm by which the squared residuals in the columns of the file are smaller than with one factor.
+/// A factor below one shrinks the noise of its column, and where lever arms can take over what the column
+/// moves by, that alone makes the residuals in metres smaller.
+double gain_in_columns(const Explanation& one_scale, const Stretched& found,
+                       const std::vector<Change>& changes) {
+  const double one_factor = found.side == Side::b ? one_scale.scale : 1;
+  // the same columns of the file, wherever they are written
+  Stretched as_given = found;
+  for (std::size_t k = 0; k < 3; ++k)
+    as_given.counts[static_cast<std::size_t>(found.order[k])] = found.counts[k];
+  const std::vector<double> before =
+      left_in_columns(one_scale.explained, changes, as_given, orders.front(), Vector3d::Constant(one_factor));
+  const std::vector<double> after =
+      left_in_columns(found.explained, changes, found, found.order, found.factors);
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    if (!(before[i] > 0 && after[i] > 0)) continue;
+    sum += std::log(before[i] / after[i]);
+    count += 1;
+  }
+  return count > 0 ? sum / count : 0;
 }
 
 Finding worded_columns(const Stretched& found, const UnlikeColumnsOptions& columns) {
@@ -173,6 +224,7 @@ std::vector<Finding> unlike_columns(const Evidence& evidence, const DiagnosisOpt
           !better(compare(without_lever_arms(one_scale, length), without_lever_arms(here.explained, length)),
                   options.least_gain, LeverArmOptions{}.sigmas))
         continue;
+      if (!(gain_in_columns(evidence.scaled, here, changes) >= columns.least_gain_in_columns)) continue;
       // columns as they are come first
       if (!best ||
           here.comparison.gain > best->comparison.gain + (order != orders.front() ? options.alike : 0))

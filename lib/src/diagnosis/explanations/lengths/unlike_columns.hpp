@@ -25,6 +25,9 @@ struct UnlikeColumnsOptions {
   /// A column counts where its part of the way is at least this, under the factors: of what hardly moves the
   /// factor is noise.
   double least_part = 0.01;
+  /// The squared residuals in the columns of the file are smaller by this, as a logarithm, at least. Factors
+  /// that only shrink the noise of their columns make them larger (mathematics).
+  double least_gain_in_columns = 0;
 };
 
 /// Finding axes_a|_b, certain or not, or odometry where it is little: three factors for the columns of the
