@@ -43,6 +43,7 @@
 #include "diagnosis/verdict/same_stream.hpp"
 #include "diagnosis/verdict/small_scale.hpp"
 #include "diagnosis/verdict/timing.hpp"
+#include "diagnosis/verdict/travel_in_noise.hpp"
 #include "egocal/diagnosis/certain_of_either.hpp"
 
 namespace egocal {
@@ -191,7 +192,10 @@ Diagnosis diagnosed(const Foreseen& foreseen, const Answered& given) {
         answered.observability.observable[i] = false;
       }
   // while the sensors stand, noise would be compared with noise
-  const Motions moving = without_rest(motions, to_pose(answered.T_a_b));
+  Motions moving = without_rest(motions, to_pose(answered.T_a_b));
+  // the rotations alone are compared where the translations are noise
+  if (travel_in_noise(evidence.instants, motions, to_pose(answered.T_a_b), options.motions))
+    moving.translation = 0;
   const RobustFit at_answer = evaluated(moving, answered.T_a_b);
   const DualQuaternion& best = evidence.given.explained.fit.T;
   Misfit misfit{detail::misfit(moving, at_answer), detail::misfit(moving, evaluated(moving, best)),
