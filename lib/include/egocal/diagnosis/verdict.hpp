@@ -80,7 +80,7 @@ struct Finding {
                                 ///< clock_drift: rate of b's clock against a's [s/s]; late_positions_a|_b:
                                 ///< how late they are [s]; time_unit, turning_scale_a|_b: factor; held_a|_b:
                                 ///< new ones a second; turning_drift_a|_b: the rate [rad/s]
-  FindingWords words{};                    ///< of message and remedy, for those who name the streams
+  FindingWords words{};         ///< of message and remedy, for those who name the streams
   std::optional<MountingChange> change{};  ///< mount_moved: how, where that is known
 };
 
