@@ -89,7 +89,8 @@ void name_contradicting_runs(const Instants& instants, int stride, const Pose& T
   finding.code = "mount_moved";
   finding.message = format(
       "These motions contradict each other: in %zu parts of the drive, together %.3g s or %.0f %% of it, the "
-      "answer of the others explains no motion. A sensor is on a part that is towed, steered or sprung, or its "
+      "answer of the others explains no motion. A sensor is on a part that is towed, steered or sprung, or "
+      "its "
       "odometry is lost again and again.",
       found.runs, found.seconds, 100 * found.part);
   finding.remedy = "Fasten both sensors to one rigid part, and record again.";
