@@ -101,10 +101,8 @@ std::vector<Finding> off_axis(const PlaneTurning& turning, double aligned, const
     if (turns.off > tilt.alone + tilt.sigmas * turns.stddev)
       findings.push_back(plane_finding(
           which,
-          format("Sensor %s turns about (%.2f, %.2f, %.2f), which is %.2f +- %.2f deg from the normal of its "
-                 "ground plane.",
-                 mark(which), turns.axis.x(), turns.axis.y(), turns.axis.z(), turns.off / degree,
-                 turns.stddev / degree),
+          format("Sensor %s turns about %s, which is %.2f +- %.2f deg from the normal of its ground plane.",
+                 mark(which), axis_in_words(turns.axis).c_str(), turns.off / degree, turns.stddev / degree),
           normal_to_check(which, turns),
           apart_by_more(turning.apart, tilt) || std::cos(turns.off) < aligned));
   return findings;

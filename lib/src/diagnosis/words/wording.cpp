@@ -44,8 +44,8 @@ std::string turned(const Eigen::Matrix3d& axes) {
   const Eigen::Vector3d turn = turn_of(axes);
   const double angle = turn.norm();
   const Eigen::Vector3d axis = angle > 0 ? Eigen::Vector3d(turn / angle) : Eigen::Vector3d::UnitZ();
-  return format("positions turned by %.1f deg about (%.2f %.2f %.2f)%s", angle * 180 / std::numbers::pi,
-                axis.x(), axis.y(), axis.z(), mirrored ? " and mirrored at the origin" : "");
+  return format("positions turned by %.1f deg about %s%s", angle * 180 / std::numbers::pi,
+                axis_in_words(axis).c_str(), mirrored ? " and mirrored at the origin" : "");
 }
 
 void word_axes(Finding& finding, const PoseReading& reading, const char* stream) {
@@ -66,6 +66,11 @@ void word_axes(Finding& finding, const PoseReading& reading, const char* stream)
 }
 
 }  // namespace
+
+std::string axis_in_words(const Eigen::Vector3d& axis) {
+  const Eigen::Array3d shown = (100 * axis.array()).round() / 100 + 0.0;  // -0.0 + 0.0 is 0.0
+  return format("(%.2f, %.2f, %.2f)", shown.x(), shown.y(), shown.z());
+}
 
 const char* mark(char stream) {
   return stream == 'a' ? "{a}" : "{b}";

@@ -20,6 +20,9 @@ Finding certain_finding(const char* code, std::string message, std::string remed
 /// "67.8 cm", and from ten metres on "12.3 m"; three digits. Of a unit that is not metres: "67.8 units".
 std::string length_in_words(double length, bool metres = true);
 
+/// "(0.84, -0.38, 0.39)", without "-0.00".
+std::string axis_in_words(const Eigen::Vector3d& axis);
+
 /// The mark of a stream ('a' or 'b') in a sentence of a finding (finding_words.hpp).
 const char* mark(char stream);
 
