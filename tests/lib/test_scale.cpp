@@ -12,6 +12,7 @@
 #include "../support/paths.hpp"
 #include "../support/random_motion.hpp"
 #include "../support/real_drives.hpp"
+#include "egocal/calibrate.hpp"
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
