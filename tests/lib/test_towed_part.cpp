@@ -81,6 +81,11 @@ testing::Streams towed(std::uint64_t seed, const Towing& towing, double noise) {
   return streams;
 }
 
+detail::Motions of_four(const detail::Instants& instants) {
+  const MotionSampleOptions sample;
+  return detail::motions_of(instants, {}, {}, 4, sample.most, sample);
+}
+
 TEST(TowedPart, IsNeverGood) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const testing::Streams streams = towed(seed, {}, 0.002);
@@ -94,7 +99,7 @@ TEST(TowedPart, ContradictsTheRestWhereTheCurvatureChanges) {
   const detail::Instants instants = detail::synchronised(streams.a, streams.b, {}, 0.5);
   const Calibration calibration = calibrate(streams.a, streams.b);
   const detail::ContradictingRuns found =
-      detail::contradicting_runs(instants, 4, calibration.T_a_b, MotionSampleOptions());
+      detail::contradicting_runs(of_four(instants), instants.period, calibration.T_a_b);
   EXPECT_GE(found.runs, 5u);
   EXPECT_GT(found.part, 0.1);
   EXPECT_LT(found.part, 0.7);
@@ -104,7 +109,7 @@ TEST(TowedPart, IsNotSuspectedInCleanDrives) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const testing::Streams streams = testing::drive(Terrain::free, seed);
     const detail::Instants instants = detail::synchronised(streams.a, streams.b, {}, 0.5);
-    EXPECT_EQ(detail::contradicting_runs(instants, 4, to_pose(streams.T), MotionSampleOptions()).runs, 0u)
+    EXPECT_EQ(detail::contradicting_runs(of_four(instants), instants.period, to_pose(streams.T)).runs, 0u)
         << seed;
   }
 }
@@ -118,14 +123,16 @@ TEST(TowedPart, WordsTheRuns) {
                                      displacement({0, 0, 0.01 * static_cast<double>(i % 100)}, {0, 0, 0}));
   std::vector<Finding> findings;
   const detail::Instants instants = detail::synchronised(streams.a, streams.b, {}, 0.5);
-  detail::name_contradicting_runs(instants, 4, to_pose(streams.T), MotionSampleOptions(), findings);
+  detail::name_contradicting_runs(instants, of_four(instants), to_pose(streams.T), MotionSampleOptions(),
+                                  findings);
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings.front().code, "mount_moved");
   EXPECT_FALSE(findings.front().certain);
   EXPECT_NE(findings.front().message.find("parts of the drive"), std::string::npos);
   // what is certain explains them
   findings.front().certain = true;
-  detail::name_contradicting_runs(instants, 4, to_pose(streams.T), MotionSampleOptions(), findings);
+  detail::name_contradicting_runs(instants, of_four(instants), to_pose(streams.T), MotionSampleOptions(),
+                                  findings);
   EXPECT_EQ(findings.size(), 1u);
 }
 

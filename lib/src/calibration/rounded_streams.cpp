@@ -8,6 +8,7 @@
 #include "diagnosis/motions/reading.hpp"
 #include "diagnosis/streams/written_digits.hpp"
 #include "egocal/geometry/pose.hpp"
+#include "pairing/congruence_floors.hpp"
 
 namespace egocal::detail {
 
@@ -34,9 +35,6 @@ OfPose rounding_of_pose(const Trajectory& trajectory) {
           of_step * digits.position.step(place)};
 }
 
-/// What CongruenceOptions may have as floors [rad, m].
-constexpr double most_angle = 1, most_length = 1e3;
-
 }  // namespace
 
 PairingOptions with_rounding(PairingOptions options, const Trajectory& a, const Trajectory& b) {
@@ -45,8 +43,8 @@ PairingOptions with_rounding(PairingOptions options, const Trajectory& a, const 
   const double angle = std::sqrt(poses) * std::hypot(of_a.rotation, of_b.rotation),
                length = std::sqrt(poses) * std::hypot(of_a.coordinate, of_b.coordinate);
   CongruenceOptions& congruence = options.screening.congruence;
-  congruence.angle_floor = std::max(congruence.angle_floor, std::min(angle, most_angle));
-  congruence.length_floor = std::max(congruence.length_floor, std::min(length, most_length));
+  congruence.angle_floor = std::max(congruence.angle_floor, std::min(angle, angle_floors.most));
+  congruence.length_floor = std::max(congruence.length_floor, std::min(length, length_floors.most));
   return options;
 }
 

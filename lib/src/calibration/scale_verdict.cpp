@@ -50,13 +50,14 @@ void put_scale(const std::optional<ScaleSolution>& estimate, double scale, const
   if (estimate)
     result.observability = with_spread_of_scale(std::move(result.observability), result.problem, *estimate);
   if (estimate && estimate->at_limit) return put_end_of_range(*estimate, options, result);
-  if (!estimate || (estimate->observable && estimate->certified) || result.verdict > Verdict::incomplete)
-    return;
+  if (!estimate || result.verdict > Verdict::incomplete) return;
   const bool good = result.verdict == Verdict::good;
-  if (estimate->observable && !good) return;
-  const std::string reason = estimate->observable ? "The scale is not proven to be the best one."
-                                                  : "The motions do not show the scale.";
-  result.reason = good ? reason : reason + " " + result.reason;
+  if (!estimate->observable)
+    result.reason = "The motions do not show the scale." + (good ? "" : " " + result.reason);
+  else if (!estimate->certified && good)
+    result.reason = "The scale is not proven to be the best one.";
+  else
+    return;
   result.verdict = Verdict::incomplete;
 }
 

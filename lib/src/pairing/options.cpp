@@ -7,6 +7,7 @@
 
 #include "egocal/error.hpp"
 #include "egocal/limits.hpp"
+#include "pairing/congruence_floors.hpp"
 
 namespace egocal {
 
@@ -58,8 +59,8 @@ void check(const ClockOptions& options) {
 
 void check(const CongruenceOptions& options) {
   require("congruence.least_turn", options.least_turn, {1e-9, std::numbers::pi}, " rad");
-  require("congruence.angle_floor", options.angle_floor, {1e-15, 1}, " rad");
-  require("congruence.length_floor", options.length_floor, {1e-15, 1e3}, " m");
+  require("congruence.angle_floor", options.angle_floor, detail::angle_floors, " rad");
+  require("congruence.length_floor", options.length_floor, detail::length_floors, " m");
   require("congruence.memory", options.memory >= 16 && options.memory <= 1'000'000, "16 to 1e6 motions");
   require("congruence.first_estimate",
           options.first_estimate >= 4 && options.first_estimate <= options.memory,

@@ -70,13 +70,17 @@ bool number_explains(const Comparison& comparison, const DiagnosisOptions& optio
   return comparison.sigmas >= options.sigmas || comparison.gain >= options.gain;
 }
 
-Finding finding_of(const Explanation& explanation, const Comparison& comparison, bool certain) {
+Finding finding_of(std::string code, const Explained& explained, const Comparison& comparison, bool certain) {
   Finding finding;
-  finding.code = explanation.code;
+  finding.code = std::move(code);
   finding.certain = certain;
   finding.improvement = std::exp(comparison.gain);
-  finding.T_a_b = to_pose(explanation.explained.fit.T);
+  finding.T_a_b = to_pose(explained.fit.T);
   return finding;
+}
+
+Finding finding_of(const Explanation& explanation, const Comparison& comparison, bool certain) {
+  return finding_of(explanation.code, explanation.explained, comparison, certain);
 }
 
 }  // namespace egocal::detail

@@ -3,6 +3,7 @@
 // Readings of the two files that are tried, and whether one explains the motions better.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "diagnosis/explanations/explanations.hpp"
@@ -41,6 +42,7 @@ bool better(const Comparison& comparison, double least_log_ratio, const Diagnosi
 bool number_explains(const Comparison& comparison, const DiagnosisOptions& options);
 
 /// Not worded yet.
+Finding finding_of(std::string code, const Explained& explained, const Comparison& comparison, bool certain);
 Finding finding_of(const Explanation& explanation, const Comparison& comparison, bool certain);
 
 }  // namespace egocal::detail

@@ -48,14 +48,12 @@ std::vector<bool> contradicting(const Motions& motions, const Pose& T_a_b,
 
 }  // namespace
 
-ContradictingRuns contradicting_runs(const Instants& instants, int stride, const Pose& T_a_b,
-                                     const MotionSampleOptions& sample,
+ContradictingRuns contradicting_runs(const Motions& motions, double period, const Pose& T_a_b,
                                      const ContradictingRunsOptions& options) {
   ContradictingRuns found;
-  const Motions motions = motions_of(instants, {}, {}, stride, sample.most, sample);
   if (motions.all.size() < 2) return found;
   const std::vector<bool> contradicts = contradicting(motions, T_a_b, options);
-  const double least = (stride + options.least_instants) * instants.period;
+  const double least = (motions.stride + options.least_instants) * period;
   std::size_t begin = 0;
   for (std::size_t i = 0; i <= contradicts.size(); ++i) {
     if (i < contradicts.size() && contradicts[i]) continue;
@@ -72,16 +70,18 @@ ContradictingRuns contradicting_runs(const Instants& instants, int stride, const
   return found;
 }
 
-void name_contradicting_runs(const Instants& instants, int stride, const Pose& T_a_b,
-                             const MotionSampleOptions& motions, std::vector<Finding>& findings,
+void name_contradicting_runs(const Instants& instants, const Motions& motions, const Pose& T_a_b,
+                             const MotionSampleOptions& sample, std::vector<Finding>& findings,
                              const ContradictingRunsOptions& options) {
   if (std::any_of(findings.begin(), findings.end(), [](const Finding& one) {
         return certain_of_either(one) || one.code == "mount_moved" || one.code == "too_little_motion";
       }))
     return;
+  const Motions shorter =
+      motions_of(instants, {}, {}, std::max(1, motions.stride / options.shorter), sample.most, sample);
   ContradictingRuns found;
-  for (const int steps : {stride, std::max(1, stride / options.shorter)}) {
-    const ContradictingRuns here = contradicting_runs(instants, steps, T_a_b, motions, options);
+  for (const Motions* looked_at : {&motions, &shorter}) {
+    const ContradictingRuns here = contradicting_runs(*looked_at, instants.period, T_a_b, options);
     if (here.runs >= options.least_runs && here.part > found.part) found = here;
   }
   if (!(found.part >= options.least_part)) return;

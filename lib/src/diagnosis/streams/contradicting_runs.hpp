@@ -37,14 +37,14 @@ struct ContradictingRuns {
   double part = 0;     ///< of the drive
 };
 
-/// Of motions over `stride` instants.
-ContradictingRuns contradicting_runs(const Instants& instants, int stride, const Pose& T_a_b,
-                                     const MotionSampleOptions& motions,
+/// motions: of instants that are `period` [s] apart.
+ContradictingRuns contradicting_runs(const Motions& motions, double period, const Pose& T_a_b,
                                      const ContradictingRunsOptions& options = {});
 
 /// Adds finding mount_moved, uncertain, where there are such runs, and no certain finding explains them.
-void name_contradicting_runs(const Instants& instants, int stride, const Pose& T_a_b,
-                             const MotionSampleOptions& motions, std::vector<Finding>& findings,
+/// motions: of the instants, sampled so.
+void name_contradicting_runs(const Instants& instants, const Motions& motions, const Pose& T_a_b,
+                             const MotionSampleOptions& sample, std::vector<Finding>& findings,
                              const ContradictingRunsOptions& options = {});
 
 }  // namespace egocal::detail

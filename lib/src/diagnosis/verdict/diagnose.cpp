@@ -162,8 +162,8 @@ void add_what_is_beside(const Foreseen& foreseen, const DiagnosisOptions& option
   if (has(result.findings, "held_a") || has(result.findings, "held_b"))
     std::erase_if(result.findings, [](const Finding& one) { return one.code.starts_with("mixed_frames_"); });
   if (pairing.mode != Mode::planar)
-    name_contradicting_runs(evidence.instants, evidence.stride, to_pose(answered.T_a_b), options.motions,
-                            result.findings);
+    name_contradicting_runs(evidence.instants, evidence.given.explained.motions, to_pose(answered.T_a_b),
+                            options.motions, result.findings);
   // what else was found may be of the stamps alone
   const std::vector<Finding> bursts = stamps_in_bursts(foreseen.a, foreseen.b, result.fit);
   result.findings.insert(result.findings.begin(), bursts.begin(), bursts.end());

@@ -3,6 +3,7 @@
 #include "diagnosis/verdict/travel_in_noise.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -24,9 +25,11 @@ double median_travel(const Motions& motions, Side side) {
 
 bool travel_in_noise(const Instants& instants, const Motions& motions, const Pose& T_a_b,
                      const MotionSampleOptions& sample, const TravelInNoiseOptions& options) {
-  const int longer = std::max(motions.stride, options.least_stride);
-  const Motions of_longer = motions_of(instants, {}, {}, longer, sample.most, sample),
-                of_steps = motions_of(instants, {}, {}, 1, sample.most, sample);
+  std::optional<Motions> made;
+  if (motions.stride < options.least_stride)
+    made = motions_of(instants, {}, {}, options.least_stride, sample.most, sample);
+  const Motions& of_longer = made ? *made : motions;
+  const Motions of_steps = motions_of(instants, {}, {}, 1, sample.most, sample);
   if (of_longer.all.empty() || of_steps.all.empty()) return false;
   double noise = 0;
   for (const Side side : {Side::a, Side::b}) {

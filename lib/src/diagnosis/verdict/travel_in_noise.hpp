@@ -24,7 +24,8 @@ struct TravelInNoiseOptions {
 };
 
 /// Whether the positions of one stream, or both, change by noise alone, the answer leaves no more than that,
-/// and the rotations agree: the translations then neither support nor contradict the answer.
+/// and the rotations agree: the translations then neither support nor contradict the answer. motions: of the
+/// instants, sampled so.
 bool travel_in_noise(const Instants& instants, const Motions& motions, const Pose& T_a_b,
                      const MotionSampleOptions& sample, const TravelInNoiseOptions& options = {});
 

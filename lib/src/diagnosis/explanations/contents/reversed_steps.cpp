@@ -111,11 +111,7 @@ bool like_mounting(const DualQuaternion& T, const ReversedStepsOptions& search) 
 }
 
 Finding worded_whole(const Explained& right, const Comparison& comparison, bool certain) {
-  Finding finding;
-  finding.code = "reversed_steps";
-  finding.certain = certain;
-  finding.improvement = std::exp(comparison.gain);
-  finding.T_a_b = to_pose(right.fit.T);
+  Finding finding = finding_of("reversed_steps", right, comparison, certain);
   say(finding,
       certain ? "The poses of a or of b are summed up from inverted steps"
               : "The poses of a or of b may be summed up from inverted steps",
@@ -131,11 +127,7 @@ Finding worded_whole(const Explained& right, const Comparison& comparison, bool 
 
 Finding worded_rotations(const Explained& right, const Comparison& comparison, Side side) {
   const char which = side == Side::a ? 'a' : 'b';
-  Finding finding;
-  finding.code = std::string("axes_") + which;
-  finding.certain = true;
-  finding.improvement = std::exp(comparison.gain);
-  finding.T_a_b = to_pose(right.fit.T);
+  Finding finding = finding_of(std::string("axes_") + which, right, comparison, true);
   say(finding, format("The position and the rotation of %s do not belong together", mark(which)),
       format("Sum up the steps of %s with their rotations from each pose to the next one.", mark(which)),
       format(": with the rotation of each step inverted, the squared residuals are %.3g times smaller.",

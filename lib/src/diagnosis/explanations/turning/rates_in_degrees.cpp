@@ -72,12 +72,8 @@ std::optional<Finding> rates_in_degrees(const Evidence& evidence, const Diagnosi
   const Comparison comparison = compare(given.explained, here);
   if (!explains(here, options) || !better(comparison, rates.gain, options)) return std::nullopt;
   const char* const stream = mark(of_b ? 'b' : 'a');
-  Finding finding;
-  finding.code = of_b ? "turning_scale_b" : "turning_scale_a";
-  finding.certain = true;
-  finding.improvement = std::exp(comparison.gain);
+  Finding finding = finding_of(of_b ? "turning_scale_b" : "turning_scale_a", here, comparison, true);
   finding.value = 1 / in_one_degree;
-  finding.T_a_b = to_pose(here.fit.T);
   say(finding, format("The turning rates of %s are in degrees a second", stream),
       format("Give the turning rates of %s in radians a second.", stream),
       format(": the squared residuals are %.3g times smaller with %s turning by a 57.3th of what it does.",

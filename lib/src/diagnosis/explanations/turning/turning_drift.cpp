@@ -20,6 +20,7 @@
 #include "egocal/diagnosis/finding_words.hpp"
 #include "linear_algebra/cross_matrix.hpp"
 #include "linear_algebra/normal_equations.hpp"
+#include "problem/tangent.hpp"
 #include "statistics/median.hpp"
 
 namespace egocal::detail {
@@ -28,8 +29,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 /// Of each motion, how long it takes [s].
 std::vector<double> durations_of(const Instants& instants, const Motions& motions) {
@@ -49,7 +48,7 @@ struct Rate {
 
 struct Sums {
   Matrix6d A = Matrix6d::Zero();
-  Vector6 b = Vector6::Zero();
+  Vector6d b = Vector6d::Zero();
 
   /// What is not shown stays zero.
   Vector3d rate() const {
@@ -164,11 +163,8 @@ Drifting fitted(const Instants& instants, const Explained& given, const std::vec
 
 Finding worded(const Drifting& drifting) {
   const char which = drifting.side == Side::a ? 'a' : 'b';
-  Finding finding;
-  finding.code = std::string("turning_drift_") + which;
-  finding.certain = true;
-  finding.improvement = std::exp(drifting.comparison.gain);
-  finding.T_a_b = to_pose(drifting.explained.fit.T);
+  Finding finding =
+      finding_of(std::string("turning_drift_") + which, drifting.explained, drifting.comparison, true);
   finding.value = drifting.rate.norm();
   say(finding,
       format(

@@ -50,11 +50,7 @@ std::vector<Pose> corrected(const std::vector<Pose>& given, double part, bool ri
 
 Finding worded_turning(Side side, double factor, const Explained& explained, const Comparison& comparison) {
   const char which = side == Side::a ? 'a' : 'b';
-  Finding finding;
-  finding.code = std::string("turning_scale_") + which;
-  finding.certain = true;
-  finding.improvement = std::exp(comparison.gain);
-  finding.T_a_b = to_pose(explained.fit.T);
+  Finding finding = finding_of(std::string("turning_scale_") + which, explained, comparison, true);
   finding.value = factor;
   say(finding,
       format(

@@ -146,11 +146,8 @@ Scaled fitted(const Explained& given, const AboutAxis& turning, Side side, doubl
 
 Finding worded(const Scaled& scaled) {
   const char which = scaled.side == Side::a ? 'a' : 'b';
-  Finding finding;
-  finding.code = std::string("turning_scale_") + which;
-  finding.certain = true;
-  finding.improvement = std::exp(scaled.comparison.gain);
-  finding.T_a_b = to_pose(scaled.explained.fit.T);
+  Finding finding =
+      finding_of(std::string("turning_scale_") + which, scaled.explained, scaled.comparison, true);
   finding.value = 1 / (1 - scaled.part);
   say(finding,
       format(
