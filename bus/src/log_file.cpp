@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <span>
+#include <string>
 
 #include "egocal/error.hpp"
 #include "egocal/io/packing.hpp"
@@ -200,7 +201,10 @@ bool LogReader::read_at(std::uint64_t offset, void* to, std::size_t size) const 
     while (got < most) {
       const ssize_t n = pread(fileno(stream_.get()), static_cast<char*>(buffer) + got, most - got,
                               static_cast<off_t>(from + got));
-      if (n <= 0) break;
+      if (n < 0 && errno == EINTR) continue;
+      // not the end of the file: a repaired copy of it would lack the rest
+      if (n < 0) throw error_at(file_, 0, "", std::string("reading failed: ") + std::strerror(errno));
+      if (n == 0) break;
       got += static_cast<std::size_t>(n);
     }
     return got;

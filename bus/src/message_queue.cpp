@@ -15,6 +15,8 @@ namespace {
 constexpr int fill_at_once = 256;
 /// Size of all waiting messages [bytes]; several times what the queues of a large rig hold.
 constexpr std::size_t max_bytes = std::size_t{64} << 20;
+/// What each subscription may hold beyond that [bytes]: one message of the largest size that is received.
+constexpr std::size_t assured_bytes = std::size_t{4} << 20;
 
 }  // namespace
 
@@ -58,12 +60,15 @@ void MessageQueue::fill(Transport& transport) {
 }
 
 void MessageQueue::put(Subscriber& subscriber, const Received& message) {
-  if (subscriber.waiting >= subscriber.capacity || bytes_ + message.bytes.size() > max_bytes) {
+  const std::size_t size = message.bytes.size();
+  const bool no_room = bytes_ + size > max_bytes && subscriber.bytes + size > assured_bytes;
+  if (subscriber.waiting >= subscriber.capacity || no_room) {
     ++dropped_;
     return;
   }
   ++subscriber.waiting;
-  bytes_ += message.bytes.size();
+  subscriber.bytes += size;
+  bytes_ += size;
   waiting_.push_back({&subscriber,
                       std::string(message.channel),
                       {message.bytes.begin(), message.bytes.end()},
@@ -75,6 +80,7 @@ void MessageQueue::handle_one() {
   const Waiting message = std::move(waiting_.front());
   waiting_.pop_front();
   --message.subscriber->waiting;
+  message.subscriber->bytes -= message.bytes.size();
   bytes_ -= message.bytes.size();
   EGOCAL_CHECK(message.subscriber->waiting >= 0 && (!waiting_.empty() || bytes_ == 0),
                "an empty queue holds no bytes");

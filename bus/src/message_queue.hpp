@@ -14,8 +14,8 @@
 
 namespace egocal::bus {
 
-/// Messages between transport and handlers, in the order of arrival. Each subscription has its own capacity,
-/// so a flood on one channel displaces nothing on another.
+/// Messages between transport and handlers, in the order of arrival. Each subscription has its own capacity
+/// and room for one message of the largest size, so a flood on one channel displaces nothing on another.
 class MessageQueue {
  public:
   void subscribe(const std::string& channel, bool prefix, Loop::Handler handler, int capacity);
@@ -36,6 +36,7 @@ class MessageQueue {
     Loop::Handler handler;
     int capacity = 0;
     int waiting = 0;
+    std::size_t bytes = 0;  ///< of what waits
   };
   struct Waiting {
     Subscriber* subscriber;

@@ -3,12 +3,16 @@
 #include "program.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <clocale>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <ctime>
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -28,6 +32,8 @@
 
 namespace egocal::monitor {
 namespace {
+
+constexpr int most_exports = 10'000;  // a limit: of one pair and format in one folder
 
 volatile std::sig_atomic_t stop_flag = 0;
 extern "C" void on_stop(int) {
@@ -89,8 +95,9 @@ class Source {
   std::vector<int> fds_;
 };
 
-// A name that no file has yet, so that no earlier export is overwritten.
-std::string free_file_name(const std::string& a, const std::string& b, ExtrinsicFormat format) {
+/// Writes it under a name that no file has, so that no earlier export is overwritten. The name.
+std::string write_export(const std::string& a, const std::string& b, ExtrinsicFormat format,
+                         const std::string& text) {
   const char* ending = format == ExtrinsicFormat::urdf     ? ".urdf"
                        : format == ExtrinsicFormat::ros    ? ".ros.sh"
                        : format == ExtrinsicFormat::kalibr ? ".kalibr.yaml"
@@ -102,8 +109,10 @@ std::string free_file_name(const std::string& a, const std::string& b, Extrinsic
     stem += plain ? c : '_';
   }
   std::string file = stem + ending;
-  for (int i = 2; std::filesystem::exists(file) && i < 10000; ++i)
+  for (int i = 2; !write_new_file(file, text); ++i) {
+    if (i == most_exports) throw Error(stem + ending + ": too many files of this name are here; remove some");
     file = stem + "-" + std::to_string(i) + ending;
+  }
   return file;
 }
 
@@ -122,8 +131,8 @@ void carry_out(const Action& action, const Model& model, ViewState& view, Source
       return;
     }
     try {
-      const std::string file = free_file_name(action.a, action.b, action.format);
-      write_whole_file(file, extrinsic_text(*extrinsic, action.format));
+      const std::string file =
+          write_export(action.a, action.b, action.format, extrinsic_text(*extrinsic, action.format));
       view.notice = "wrote " + file +
                     (pair->old > 0          ? " (an old answer: not to be used)"
                      : extrinsic->certified ? ""
@@ -223,8 +232,12 @@ int run_terminal(const ProgramOptions& options, Model& model, Source& source,
   }
 }
 
+/// False: the reader has seen enough and has gone. Throws Error where the output cannot be written otherwise.
 bool print(const std::string& text) {
-  return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0)
+    return true;
+  if (errno == EPIPE) return false;
+  throw Error(std::string("standard output: cannot be written: ") + std::strerror(errno));
 }
 
 void handle_stop() {
@@ -265,9 +278,9 @@ int run_once(const ProgramOptions& options, Model& model, Source& source, Charse
     const Size size = size_from_text(options.size).value_or(Size{});
     Canvas canvas(size.width, size.height);
     draw(canvas, model, view);
-    print(canvas.to_text());
+    static_cast<void>(print(canvas.to_text()));
   } else {
-    print(options.json ? json_line(model) + "\n" : text_lines(model, charset));
+    static_cast<void>(print(options.json ? json_line(model) + "\n" : text_lines(model, charset)));
   }
   if (!stop_flag) require_messages(model, source);
   return 0;
@@ -346,7 +359,8 @@ int run(const ProgramOptions& options) {
   std::string why_not;
   if (std::unique_ptr<Terminal> terminal = Terminal::open(terminal_options, why_not)) {
     const int code = run_terminal(options, model, source, std::move(terminal));
-    print(pair_lines(model, charset));  // the answer stays on the screen when the monitor has gone
+    static_cast<void>(
+        print(pair_lines(model, charset)));  // the answer stays on the screen when the monitor has gone
     return code;
   }
   std::fprintf(stderr, "egocal-monitor: %s: printing lines instead\n", why_not.c_str());

@@ -7,14 +7,22 @@
 
 #include "delivery.hpp"
 #include "egocal/bus/log_file.hpp"
+#include "egocal/bus/timed_log.hpp"
+#include "egocal/microseconds.hpp"
 
 namespace egocal::monitor {
+
+namespace {
+
+constexpr double tick_s = 0.5;  // of the log, between two looks at what is overdue
+
+}  // namespace
 
 struct Recording::State {
   State(Model& shown, const std::string& file) : model(shown), delivery(shown), log(file) {}
   Model& model;
   Delivery delivery;
-  bus::LogReader log;
+  bus::TimedLog log;
   std::optional<bus::LogEvent> next;
   std::uint64_t damaged_regions = 0;  ///< already reported
   double speed = 0;
@@ -40,15 +48,15 @@ Now Recording::advance(std::int64_t mono_us) {
   State& s = *state_;
   Model& model = s.model;
   if (!s.started_mono_us) s.started_mono_us = mono_us;
-  const double due_us = static_cast<double>(mono_us - *s.started_mono_us) * s.speed;
+  const double due_s = to_seconds(mono_us - *s.started_mono_us) * s.speed;
   const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(50);
   while (s.next) {
     // a log made of two may step back in time; the session then continues at its time
     const std::int64_t stamp = std::max(s.next->time_us, s.time_us);
-    if (s.speed > 0 && static_cast<double>(stamp - s.first_us) > due_us) break;
+    if (s.speed > 0 && seconds_between(s.first_us, stamp) > due_s) break;
     s.time_us = stamp;
     const Now now{s.time_us, s.time_us};
-    if (s.time_us - s.ticked_us >= 500000) {
+    if (seconds_between(s.ticked_us, s.time_us) >= tick_s) {
       s.ticked_us = s.time_us;
       model.tick(now);
     }

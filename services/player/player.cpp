@@ -128,7 +128,8 @@ void Player::obey(const Control& control) {
 
 /// Stays where it is if there is nothing so far into the log.
 void Player::seek(double seconds) {
-  Tape there(options_.log, options_.range);
+  // a copy: the log may have been moved, or its name given to another one
+  Tape there = tape_;
   there.rewind(std::max(seconds, options_.range.start));
   std::optional<bus::LogEvent> event = there.next();
   if (!event) {
@@ -241,7 +242,8 @@ void Player::play() {
     const double speed = options_.speed == 0 && alone_ ? 1 : options_.speed;
     if (speed > 0 && !step_) {
       const double ahead_us = (static_cast<double>(next_->time_us) - static_cast<double>(anchor_us_)) / speed;
-      const std::int64_t due = anchor_mono_us_ + std::llround(std::min(ahead_us, longest_wait_us));
+      const std::int64_t due =
+          anchor_mono_us_ + std::llround(std::clamp(ahead_us, -longest_wait_us, longest_wait_us));
       const std::int64_t wait = due - loop_.mono_us();
       if (wait > 0) {
         if (wait > options_.pace.announced_wait_us && announced_gap_us_ != next_->time_us) {

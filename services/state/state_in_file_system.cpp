@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "egocal/error.hpp"
+#include "egocal/io/descriptor.hpp"
 #include "egocal/io/whole_file.hpp"
 #include "state/state_lock.hpp"
 
@@ -25,12 +26,10 @@ namespace {
 /// must not block. Empty: there is no file.
 std::optional<StateMedium::Found> whole(const std::string& file, const StateMedium::Expected& expected,
                                         const StateOptions& options) {
-  const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  const Descriptor opened(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  const int fd = opened.get();
   if (fd < 0 && errno == ENOENT) return std::nullopt;
-  const auto fail = [&](const std::string& why) {
-    if (fd >= 0) close(fd);
-    throw error_at(file, 0, "", why);
-  };
+  const auto fail = [&](const std::string& why) { throw error_at(file, 0, "", why); };
   if (fd < 0) fail(std::string("cannot be read: ") + std::strerror(errno));
   struct stat status {};
   if (fstat(fd, &status) != 0) fail(std::string("cannot be read: ") + std::strerror(errno));
@@ -58,12 +57,9 @@ std::optional<StateMedium::Found> whole(const std::string& file, const StateMedi
   const auto begins_so = [&bytes](const std::string& begin) {
     return std::memcmp(bytes.data(), begin.data(), std::min(bytes.size(), begin.size())) == 0;
   };
-  if (std::none_of(expected.begins.begin(), expected.begins.end(), begins_so)) {
-    close(fd);
+  if (std::none_of(expected.begins.begin(), expected.begins.end(), begins_so))
     throw not_a_state(file, expected.process);
-  }
   read_up_to(static_cast<std::size_t>(most));
-  close(fd);
   return found;
 }
 

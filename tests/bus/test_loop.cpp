@@ -150,6 +150,25 @@ TEST(Loop, AFloodOnOneChannelDisplacesNothingOnAnother) {
   EXPECT_EQ(loop.counts().queue_full, 90);
 }
 
+// The messages that wait may have 64 MiB: large ones of one channel left no room for any other.
+TEST(Loop, AFloodOfLargeMessagesDisplacesNothingOnAnotherChannel) {
+  test::VirtualClock clock;
+  test::VirtualNetwork network(clock);
+  Loop loop(network.transport(), clock, {.handle_signals = false});
+  int flood = 0, calm = 0;
+  loop.subscribe_bytes(
+      "FLOOD", [&](const Arrival&) { ++flood; }, 100);
+  loop.subscribe<command_t>(
+      "CALM", [&](const command_t&, const Arrival&) { ++calm; }, 10);
+  const std::vector<std::byte> large(std::size_t{4} << 20);
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(loop.publish_bytes("FLOOD", large));
+  loop.publish("CALM", command_t{});
+  loop.run_once(0ns);
+  EXPECT_EQ(flood, 16);
+  EXPECT_EQ(calm, 1);
+  EXPECT_EQ(loop.counts().queue_full, 4);
+}
+
 TEST(Loop, UndecodableChannelsAreBounded) {
   test::VirtualClock clock;
   test::VirtualNetwork network(clock);

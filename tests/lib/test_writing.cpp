@@ -13,6 +13,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <string>
 #include <tuple>
 
 #include "../support/file_content.hpp"
@@ -185,6 +187,42 @@ TEST_F(Writing, AnMcapFileHoldsNoMoreChannelsThanItsFormatCounts) {
         throw;
       },
       Error);
+}
+
+// The state of the diagnosis has the name of pairing's with more behind it, and pairing removed what was
+// being written of it.
+TEST_F(Writing, OnlyTemporariesOfThisNameAreRemoved) {
+  for (const char* name : {"state.17-0.part", "state.17-1000.part", "state.diagnosis.17-0.part", "state.part",
+                           "state.notes.part", "state.17.part", "state.-1.part", "states.17-0.part"})
+    std::ofstream(path(name)) << name;
+  remove_temporaries(path("state"));
+  EXPECT_FALSE(fs::exists(path("state.17-0.part")));
+  EXPECT_FALSE(fs::exists(path("state.17-1000.part")));
+  EXPECT_EQ(temporaries(), 6);
+}
+
+TEST_F(Writing, ANewFileNeverReplacesOne) {
+  EXPECT_TRUE(write_new_file(path("new"), "first"));
+  EXPECT_FALSE(write_new_file(path("new"), "second"));
+  EXPECT_EQ(testing::content_of(path("new")), "first");
+  fs::create_symlink(path("nowhere"), path("link"));
+  EXPECT_FALSE(write_new_file(path("link"), "through a link"));
+  EXPECT_FALSE(fs::exists(path("nowhere")));
+  EXPECT_THROW(write_new_file(path("no_folder/new"), "nowhere"), Error);
+  EXPECT_EQ(temporaries(), 0);
+}
+
+TEST_F(Writing, FilesThatCannotBeReadLeaveNothingOpen) {
+  const auto open_files = [] {
+    return std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator());
+  };
+  std::ofstream(path("broken.mcap.zst"), std::ios::binary) << std::string("\x28\xb5\x2f\xfd", 4) << "broken";
+  const auto before = open_files();
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_THROW(read_trajectory(folder.string()), Error);
+    EXPECT_THROW(read_trajectory(path("broken.mcap.zst")), Error);
+  }
+  EXPECT_EQ(open_files(), before);
 }
 
 }  // namespace

@@ -231,6 +231,33 @@ TEST(Terminal, TwentyPairsAtAHundredHertzCostLittle) {
   expect_shell_is_back(tmux);
 }
 
+// One bit of one stamp: the monitor waited for years, or showed them.
+TEST(WithoutATerminal, ADamagedStampCausesNoWait) {
+  const std::filesystem::path damaged = scratch / "damaged.log";
+  {
+    bus::LogReader from(recording);
+    bus::LogWriter to(damaged);
+    for (int i = 0; const std::optional<bus::LogEvent> event = from.next(); ++i)
+      to.write(event->time_us ^ (i == 300 ? std::int64_t{1} << 54 : 0), event->channel, event->data);
+    to.close();
+  }
+  const std::string follow = environment("xterm") + "timeout 30 " + program + " --follow --json --log ";
+  const Output undamaged = output_of(follow + recording + " --speed 0 2>&1");
+  EXPECT_EQ(undamaged.status, 0);
+  const Output at_once = output_of(follow + damaged.string() + " --speed 0 2>&1");
+  EXPECT_EQ(at_once.text, undamaged.text);
+  EXPECT_EQ(output_of(follow + damaged.string() + " --speed 100 2>&1").status, 0);
+}
+
+TEST(WithoutATerminal, AnOutputThatCannotBeWrittenIsAnError) {
+  for (const std::string option : {" --follow --json", " --follow", " --once", " --once --size 80x24"}) {
+    const Output full = output_of(environment("xterm") + program + " --log " + recording + option +
+                                  " 2>&1 >/dev/full < /dev/null");
+    EXPECT_EQ(full.status, 1) << option;
+    EXPECT_THAT(full.text, HasSubstr("standard output: cannot be written: No space left")) << option;
+  }
+}
+
 TEST(WithoutATerminal, LinesAndObjectsForPipes) {
   const std::string log = " --log " + recording;
   const Output once = output_of(environment("xterm") + program + log + " --once 2>&1");

@@ -268,7 +268,10 @@ void Answers::note(const problem_t& message) {
   const bool older = std::tie(message.session, message.seq) < std::tie(newest.session, newest.seq);
   newest.older_in_a_row = older ? newest.older_in_a_row + 1 : 0;
   if (older && newest.older_in_a_row < confirmations) return;
-  if (newest.session != message.session) newest.passed.clear();
+  if (newest.session != message.session) {
+    newest.passed.clear();
+    newest.passed_step_us = Newest{}.passed_step_us;
+  }
   newest.session = message.session;
   newest.seq = message.seq;
   newest.utime = message.utime;

@@ -98,7 +98,7 @@ Found heard(const ExportOptions& options) {
     });
   };
   while (!done() && std::chrono::steady_clock::now() < end)
-    if (!loop.run_once(std::chrono::milliseconds(50))) break;
+    if (!loop.run_once(std::chrono::milliseconds(50))) throw cli::Exit{1};
   for (const auto& [channel, count] : loop.undecodable())
     say(fmt::format("egocal: warning: {}: {} refused: not decodable, or of another pair",
                     bus::printable(channel, 63), counted(static_cast<std::uint64_t>(count), "message")));

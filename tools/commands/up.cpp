@@ -20,6 +20,7 @@
 #include "egocal/in_words.hpp"
 #include "egocal/io/whole_file.hpp"
 #include "offline/reading/log_channels.hpp"
+#include "offline/rig/pair_request.hpp"
 #include "supervision/bus_watch.hpp"
 #include "supervision/interruptions.hpp"
 #include "supervision/output_file.hpp"
@@ -105,17 +106,10 @@ bool write_reports(const UpOptions& options, const bus::Rig& rig, const std::str
   bool usable = true;
   for (const bus::PairConfig& pair : rig.pairs) {
     const std::string file = fmt::format("{}/report-{}-{}.html", directory, pair.a, pair.b);
-    SolveRequest request;
-    request.source.log = options.log;
-    request.source.a = bus::sensor(rig, pair.a).channel;
-    request.source.b = bus::sensor(rig, pair.b).channel;
-    request.calibration.pairing = bus::drive_options(rig, pair);
-    request.calibration.read_a.scale = bus::sensor(rig, pair.a).scale;
-    request.calibration.read_b.scale = bus::sensor(rig, pair.b).scale;
-    request.truth = pair.truth;
     try {
-      const ReportInput page = write_report(
-          request, file, fmt::format("egocal up {} --log {} --report", options.rig, options.log));
+      const ReportInput page =
+          write_report(request_of_pair(rig, pair, options.log), file,
+                       fmt::format("egocal up {} --log {} --report", options.rig, options.log));
       report(file + ": " + page.verdict);
       usable = usable && page.calibration.verdict != Verdict::contradictory;
     } catch (const Error& error) {

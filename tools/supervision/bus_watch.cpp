@@ -16,6 +16,7 @@
 #include <csignal>
 #include <cstring>
 #include <new>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -27,6 +28,7 @@
 #include "egocal/bus/pair_messages.hpp"
 #include "egocal/bus/process.hpp"
 #include "egocal/error.hpp"
+#include "egocal/io/whole_file.hpp"
 #include "supervision/bus_news.hpp"
 #include "supervision/last_motions.hpp"
 
@@ -48,10 +50,6 @@ std::optional<std::string> pairing_heard(const std::string& url, std::chrono::mi
   // on a computer under load the time has passed while a message waits
   if (!found) loop.run_once({});
   return found;
-}
-
-void Descriptor::reset() {
-  if (const int fd = std::exchange(fd_, -1); fd >= 0) close(fd);
 }
 
 namespace {
@@ -91,12 +89,9 @@ void terminate(pid_t pid) {
   kill(pid, SIGCONT);
 }
 
-void write_all(int out, const std::string& text) {
-  for (std::size_t done = 0; done < text.size();) {
-    const ssize_t n = write(out, text.data() + done, text.size() - done);
-    if (n < 0 && errno != EINTR) return;
-    if (n > 0) done += static_cast<std::size_t>(n);
-  }
+/// A reader that has gone needs nothing more.
+void send(int out, const std::string& text) {
+  static_cast<void>(write_all(out, std::as_bytes(std::span(text))));
 }
 
 }  // namespace
@@ -119,7 +114,7 @@ struct BusWatch::Shared {
                                [](const Process& x, const Process& y) { return x.heard_ms < y.heard_ms; });
       entry->pid = -1;
     }
-    // read in the other order: who sees that no silence is announced any more has seen this status
+    // announced_silence() is read before silence(): a reader that finds no announcement has seen this status
     entry->heard_ms = now_ms;
     entry->announced_s = announced.count();
     entry->pid = pid;
@@ -217,17 +212,16 @@ void BusWatch::listen(int out, int lines) {
         shared_->counted = asked;
       }
       // does not block: where the supervisor does not read them, lines are dropped
-      write_all(lines, listening.news());
+      send(lines, listening.news());
     });
     loop.run();
     if (reader) {
       const Outcome outcome = listening.outcome(*reader);
-      write_all(out,
-                std::string(outcome.answered ? "1" : "0") + (outcome.unusable ? "1" : "0") + outcome.text);
+      send(out, std::string(outcome.answered ? "1" : "0") + (outcome.unusable ? "1" : "0") + outcome.text);
     }
   } catch (const std::exception& error) {
-    write_all(lines, fmt::format("the process that listens to the bus failed: {}\n", error.what()));
-    write_all(out, failed + std::string(error.what()));
+    send(lines, fmt::format("the process that listens to the bus failed: {}\n", error.what()));
+    send(out, failed + std::string(error.what()));
   }
   _exit(0);
 }

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "egocal/bus/rig.hpp"
+#include "egocal/io/descriptor.hpp"
 #include "supervision/bus_news.hpp"
 #include "supervision/outcome.hpp"
 
@@ -18,23 +19,6 @@ namespace egocal::tools {
 
 /// A pairing process that is alive on the bus within this time, as text: "egocal-pairing (pid 7 on car)".
 std::optional<std::string> pairing_heard(const std::string& url, std::chrono::milliseconds time);
-
-/// Of an open file, which is closed at the end.
-class Descriptor {
- public:
-  explicit Descriptor(int fd = -1) : fd_(fd) {}
-  ~Descriptor() { reset(); }
-  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(fd_, other.fd_);
-    return *this;
-  }
-  int get() const { return fd_; }
-  void reset();
-
- private:
-  int fd_;
-};
 
 struct BusWatchOptions {
   BusNewsOptions news;

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "egocal/error.hpp"
+#include "egocal/io/descriptor.hpp"
 
 namespace egocal {
 
@@ -49,10 +50,10 @@ bool in_proc(const fs::path& file) {
 }
 
 /// Where the links of a path lead: the file, or a link of /proc such as that of /dev/stdout.
-fs::path end_of_links(const std::string& path) {
+fs::path end_of_links(const std::string& path, bool into_proc = false) {
   fs::path file(path);
   std::error_code error;
-  for (int i = 0; i < most_links && fs::is_symlink(file, error) && !in_proc(file); ++i) {
+  for (int i = 0; i < most_links && fs::is_symlink(file, error) && (into_proc || !in_proc(file)); ++i) {
     const fs::path to = fs::read_symlink(file, error);
     if (error) break;
     file = to.is_absolute() ? to : file.parent_path() / to;
@@ -114,16 +115,26 @@ bool can_be_replaced(const std::string& path) {
 }
 
 std::string without_links(const std::string& path) {
-  fs::path file(path);
+  const fs::path file = end_of_links(path, true);
   std::error_code error;
-  for (int i = 0; i < most_links && fs::is_symlink(file, error); ++i) {
-    const fs::path to = fs::read_symlink(file, error);
-    if (error) break;
-    file = to.is_absolute() ? to : file.parent_path() / to;
-  }
   const fs::path folder = fs::canonical(folder_of(file), error);
   return error ? file.string() : (folder / file.filename()).string();
 }
+
+namespace {
+
+/// Whether what is between the file's name and the suffix was made by name_temporary(): of a process and a
+/// number. A file beside it may have a name that only begins so, and temporaries of its own.
+bool is_of_process(std::string_view middle) {
+  const std::size_t dash = middle.find('-');
+  const auto is_number = [](std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+  };
+  return dash != std::string_view::npos && is_number(middle.substr(0, dash)) &&
+         is_number(middle.substr(dash + 1));
+}
+
+}  // namespace
 
 void remove_temporaries(const std::string& file) {
   const fs::path target(without_links(file));
@@ -132,7 +143,11 @@ void remove_temporaries(const std::string& file) {
   for (const fs::directory_entry& entry : fs::directory_iterator(target.parent_path(), error)) {
     const std::string name = entry.path().filename();
     std::error_code none;
-    if (name.starts_with(start) && name.ends_with(temporary_suffix)) fs::remove(entry.path(), none);
+    if (!name.starts_with(start) || !name.ends_with(temporary_suffix)) continue;
+    const std::string_view after = std::string_view(name).substr(start.size());
+    if (after.size() > temporary_suffix.size() &&
+        is_of_process(after.substr(0, after.size() - temporary_suffix.size())))
+      fs::remove(entry.path(), none);
   }
 }
 
@@ -206,8 +221,31 @@ void WholeFile::commit() {
   sync_folder(target_);
 }
 
+bool WholeFile::commit_as_new() {
+  flush();
+  if (fsync(fd_) != 0) fail(std::string("cannot be written: ") + std::strerror(errno));
+  const Descriptor reserved(open(target_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  if (reserved.get() < 0 && errno == EEXIST) return false;
+  if (reserved.get() < 0) fail(std::string("cannot be written: ") + std::strerror(errno));
+  try {
+    commit();
+  } catch (...) {
+    unlink(target_.c_str());
+    throw;
+  }
+  return true;
+}
+
 int WholeFile::release_descriptor() {
   return std::exchange(fd_, -1);
+}
+
+bool write_new_file(const std::string& file, std::string_view content) {
+  std::error_code none;
+  if (fs::exists(fs::symlink_status(file, none))) return false;
+  WholeFile whole(file);
+  whole.write(content);
+  return whole.commit_as_new();
 }
 
 void write_whole_file(const std::string& file, std::string_view content) {

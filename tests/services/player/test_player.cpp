@@ -212,6 +212,23 @@ TEST_F(PlayerProcess, PausesStepsSeeksAndResumesByCommands) {
     EXPECT_NEAR(heard[i].seconds, heard[i - 1].seconds + 0.1, 1e-9);
 }
 
+// It plays the file that it has opened, whatever its name has become.
+TEST_F(PlayerProcess, SeeksInALogThatWasMoved) {
+  write(evenly(60, 0.1));
+  start({"--paused"});
+  ASSERT_TRUE(until([&] { return status.state == "paused"; }));
+  std::filesystem::remove(log);
+  command("seek 3.05");
+  ASSERT_TRUE(until([&] { return counter("seeks") == 1; })) << said();
+  command("step");
+  ASSERT_TRUE(until([&] { return !heard.empty(); })) << said();
+  EXPECT_NEAR(heard.back().seconds, 3.1, 1e-9);
+  command("speed 100");
+  command("resume");
+  EXPECT_EQ(ended(), 0);
+  EXPECT_NEAR(heard.back().seconds, 5.9, 1e-9);
+}
+
 TEST_F(PlayerProcess, LoopsUntilItIsEnded) {
   write(evenly(10, 0.05));
   start({"--loop", "--start", "0.1", "--channel", "LEFT"});

@@ -71,13 +71,14 @@ class EventNumbers {
 /// events: the reader continues at the next plausible event (liblcm's own reader ends there silently). An
 /// event with impossible lengths is skipped. Other damage inside an event is visible only to its decoder. The
 /// memory is that of one event, at most 64 MiB whatever a damaged length field says, and the time is
-/// proportional to the size of the file.
+/// proportional to the size of the file. A copy reads on by itself, in the same open file: its name may have
+/// been given to another one since.
 class LogReader {
  public:
   /// Throws Error where the file cannot be opened or is not a log at all (no event in it).
   explicit LogReader(const std::string& file);
 
-  /// The next event; empty at the end.
+  /// The next event; empty at the end. Throws Error where the file cannot be read.
   std::optional<LogEvent> next();
   /// Back to the first event.
   void rewind();
@@ -103,7 +104,7 @@ class LogReader {
   std::string channel_of(const Place& place) const;
 
   std::string file_;
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream_;
+  std::shared_ptr<std::FILE> stream_;          ///< read at places, so copies share it
   mutable std::vector<unsigned char> window_;  ///< a piece of the file ...
   mutable std::uint64_t window_at_ = 0;        ///< ... that begins here
   std::uint64_t position_ = 0, size_ = 0;

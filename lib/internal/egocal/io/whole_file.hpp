@@ -30,6 +30,8 @@ class WholeFile {
   /// Gives the file its name. Throws Error; what had the name before is then still there. Nothing can be
   /// written afterwards but to the file descriptor; a second call does nothing.
   void commit();
+  /// The same where no file has the name. False: one has it, and nothing was written.
+  bool commit_as_new();
   /// After commit(): the file, open for writing at its end. The caller closes it.
   int release_descriptor();
 
@@ -53,6 +55,9 @@ bool can_be_replaced(const std::string& file);
 /// Writes the whole file or nothing, by a WholeFile. What cannot be replaced is written to as it is, at its
 /// end; /dev/stdout after what was printed before. Throws Error.
 void write_whole_file(const std::string& file, std::string_view content);
+
+/// Writes the whole file under a name that no file has. False: one has it. Throws Error.
+bool write_new_file(const std::string& file, std::string_view content);
 
 /// All of the bytes to what a descriptor has open. False: not all, and errno tells why.
 bool write_all(int fd, std::span<const std::byte> bytes);

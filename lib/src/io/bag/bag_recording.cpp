@@ -166,7 +166,8 @@ void BagRecording::take_undecided(std::size_t stream, const TakePose& take) {
 
 void BagRecording::take_at(std::int64_t time_ns, const Usable& usable, std::size_t stream,
                            const TakePose& take) {
-  const std::int64_t time_us = time_ns / 1000 + (time_ns % 1000 >= 500 ? 1 : 0);
+  const std::int64_t rest_ns = time_ns % 1000;  // has the sign of the time
+  const std::int64_t time_us = time_ns / 1000 + (rest_ns >= 500 ? 1 : 0) - (rest_ns <= -500 ? 1 : 0);
   if (!plausible_relative_time(time_us))
     refuse(streams_[stream].topic, "its time is out of range");
   else if (!usable.velocity)

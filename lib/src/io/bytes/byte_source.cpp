@@ -22,15 +22,12 @@ constexpr std::size_t smallest_window = 4 << 10;
 
 }  // namespace
 
-ByteSource::ByteSource(const std::string& file) : file_(file) {
-  descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+ByteSource::ByteSource(const std::string& file)
+    : file_(file), descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
   struct stat status {};
-  if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0)
+  if (descriptor_.get() < 0 || ::fstat(descriptor_.get(), &status) != 0)
     throw error_at(file, 0, "", std::string("cannot be opened for reading: ") + std::strerror(errno));
-  if (S_ISDIR(status.st_mode)) {
-    ::close(descriptor_);
-    throw error_at(file, 0, "", "is a folder, expected a file");
-  }
+  if (S_ISDIR(status.st_mode)) throw error_at(file, 0, "", "is a folder, expected a file");
   seekable_ = S_ISREG(status.st_mode);
   size_ = seekable_ ? static_cast<std::uint64_t>(status.st_size) : 0;
   window_.resize(size_ > 0 ? std::clamp<std::uint64_t>(size_, smallest_window, window_size) : window_size);
@@ -46,13 +43,9 @@ ByteSource::ByteSource(const std::string& file) : file_(file) {
   end_ = false;
 }
 
-ByteSource::~ByteSource() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
 std::size_t ByteSource::read_raw(unsigned char* to, std::size_t size) {
   while (true) {
-    const ssize_t got = ::read(descriptor_, to, size);
+    const ssize_t got = ::read(descriptor_.get(), to, size);
     if (got >= 0) return static_cast<std::size_t>(got);
     if (errno != EINTR) throw error_at(file_, 0, "", std::string("reading failed: ") + std::strerror(errno));
   }
@@ -105,7 +98,7 @@ std::uint64_t ByteSource::skip(std::uint64_t size) {
   position_ += passed;
   if (passed < size && seekable_ && !unpacker_) {
     const std::uint64_t jump = std::min(size - passed, size_ > offset() ? size_ - offset() : 0);
-    if (jump > 0 && ::lseek(descriptor_, static_cast<off_t>(jump), SEEK_CUR) >= 0) {
+    if (jump > 0 && ::lseek(descriptor_.get(), static_cast<off_t>(jump), SEEK_CUR) >= 0) {
       window_offset_ += position_ + jump;
       position_ = filled_ = 0;
       return passed + jump;
@@ -148,7 +141,7 @@ std::string ByteSource::why_empty() const {
 /// Of the packed file, from where unpacking has ended; of a pipe what has been read.
 std::uint64_t ByteSource::packed_left() const {
   const std::uint64_t read = packed_end_ - packed_at_;
-  const off_t at = seekable_ ? ::lseek(descriptor_, 0, SEEK_CUR) : -1;
+  const off_t at = seekable_ ? ::lseek(descriptor_.get(), 0, SEEK_CUR) : -1;
   return read +
          (at >= 0 && static_cast<std::uint64_t>(at) < size_ ? size_ - static_cast<std::uint64_t>(at) : 0);
 }
@@ -159,7 +152,7 @@ void ByteSource::rewind() {
     position_ = 0;
     return;
   }
-  if (!seekable_ || ::lseek(descriptor_, 0, SEEK_SET) != 0)
+  if (!seekable_ || ::lseek(descriptor_.get(), 0, SEEK_SET) != 0)
     throw error_at(file_, 0, "", "is a pipe and has to be read twice; save it to a file first");
   window_offset_ = 0;
   position_ = filled_ = packed_at_ = packed_end_ = 0;

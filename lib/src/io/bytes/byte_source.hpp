@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "egocal/io/descriptor.hpp"
 #include "egocal/io/packing.hpp"
 #include "egocal/io/trajectory_file.hpp"
 #include "io/bytes/unpacker.hpp"
@@ -24,7 +25,6 @@ using ByteSpan = std::span<const unsigned char>;
 class ByteSource {
  public:
   explicit ByteSource(const std::string& file);
-  ~ByteSource();
   ByteSource(const ByteSource&) = delete;
   ByteSource& operator=(const ByteSource&) = delete;
 
@@ -55,7 +55,7 @@ class ByteSource {
   std::uint64_t packed_left() const;
 
   std::string file_;
-  int descriptor_ = -1;
+  Descriptor descriptor_;
   bool seekable_ = false;
   std::uint64_t size_ = 0;
   std::optional<Packing> packing_;
