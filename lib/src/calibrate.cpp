@@ -135,8 +135,8 @@ Calibration calibrate_streams(const Trajectory& a, const Trajectory& given_b,
     time_offset = estimate_time_offset(a, given_b, {.max_gap = validated(pairing_options).max_gap});
     if (!time_offset)
       throw Error("time offset: cannot be estimated, the streams are too short or never turn");
-    pairing_options.time_offset =
-        0;  // an offset cannot express a drift, so the stamps themselves are corrected
+    // an offset cannot express a drift, so the stamps themselves are corrected
+    pairing_options.time_offset = 0;
   }
   std::optional<Trajectory> corrected;
   if (time_offset) corrected = on_clock_of_a(*time_offset, given_b);
@@ -221,7 +221,7 @@ Calibration calibrate_scaled(const Trajectory& a, const Trajectory& b, const Cal
   std::optional<ScaleSolution> estimate;
   PairingOptions pairing = options.pairing;
   if (options.estimate_scale) {
-    // rotations alone show the time offset, whatever the scale
+    // rotations alone show the time offset; lengths of one unit refine it once the scale is known
     std::optional<TimeOffset> offset;
     if (options.estimate_time_offset)
       offset = estimate_time_offset(a, b, {.max_gap = validated(pairing).max_gap});

@@ -17,6 +17,7 @@
 #include "egocal/error.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "state/state_identity.hpp"
+#include "support/file_content.hpp"
 #include "support/mistakes.hpp"
 #include "support/virtual_time.hpp"
 
@@ -329,8 +330,11 @@ TEST_F(SavedMemories, WhateverFailsAtTheEndEndsNothingElse) {
   };
   start();
   play(drive(100), 100);
+  const std::string before = testing::content_of(file);
+  EXPECT_FALSE(before.empty());
   fails = true;
   host.reset();
+  EXPECT_EQ(testing::content_of(file), before) << "a state that cannot be written whole is that of before";
 }
 
 }  // namespace

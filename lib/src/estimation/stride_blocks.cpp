@@ -198,11 +198,4 @@ WeightedBlocks TouchingSums::weighted(const StrideWeights& weights) const {
   return WeightedBlocks(std::move(sums));
 }
 
-std::uint64_t StrideBlocks::instants_left_out() const {
-  std::uint64_t count = 0;
-  for (std::size_t block = 0; block < blocks(); ++block)
-    if (state_.outlier[block] != 0) count += state_.instants[block];
-  return count;
-}
-
 }  // namespace egocal

@@ -70,8 +70,6 @@ class StrideBlocks {
   StrideCell total(std::size_t stride) const;
   /// Motions within one block, weighted: what the blocks say independently of each other.
   std::vector<Statistics> within(const StrideWeights& weights) const;
-  /// Instants in blocks that are omitted.
-  std::uint64_t instants_left_out() const;
   const State& state() const { return state_; }
 
  private:
