@@ -129,7 +129,7 @@ void PairSession::hand_out(const std::vector<MotionPair>& pairs, std::vector<Mot
 }
 
 std::optional<problem_t> PairSession::message() {
-  if (state_.session < 0 || state_.seq == 0) return std::nullopt;
+  if (!has_problem()) return std::nullopt;
   if (scale_ && !scale_->known()) {
     fresh_ = false;
     return std::nullopt;
@@ -180,7 +180,7 @@ std::optional<scale_problem_t> PairSession::scale_message() const {
 }
 
 void PairSession::count(std::map<std::string, std::int64_t>& counters) const {
-  const PairingCounts counts = this->counts();
+  const PairingCounts counts = scale_ ? scale_->counts() : drive_.running_counts();
   counters["matched"] += static_cast<std::int64_t>(counts.matched);
   counters["outliers"] += static_cast<std::int64_t>(counts.outliers);
   for (std::size_t i = 0; i < counts.rejected.size(); ++i)

@@ -66,10 +66,13 @@ class PairSession {
 
   /// Something new is in the problem since the last message().
   bool fresh() const { return fresh_; }
+  /// message() will first choose the weights of a short drive, which takes about 2 ms.
+  bool costs_a_choice() const { return has_problem() && !scale_ && drive_.costs_a_choice(); }
   /// The current problem, without the host of the sender; empty: there is none yet.
   std::optional<problem_t> message();
   /// The current problem of the unknown scale; empty: no scale is to be found, or there are no motions yet.
   std::optional<scale_problem_t> scale_message() const;
+  /// As many statuses as senders need are sent, so this chooses no weights (MotionPairing::running_counts).
   void count(std::map<std::string, std::int64_t>& counters) const;
 
   PairState state() const;
@@ -84,6 +87,7 @@ class PairSession {
   std::vector<MotionPair> push_pose(Side side, const StampedPose& pose);
   /// Poses, clock and synchronisation, whatever is made of them.
   const MotionPairing& pairing() const { return scale_ ? scale_->pairing() : drive_; }
+  bool has_problem() const { return state_.session >= 0 && state_.seq > 0; }
   PairingCounts counts() const { return scale_ ? scale_->counts() : drive_.counts(); }
 
   std::size_t index_;

@@ -97,10 +97,12 @@ void Pairing::take(std::uint16_t channel, const bus::Arrival& arrival) {
   if (unacknowledged_ >= options_.acknowledge_every && acknowledges_early()) heartbeat_.publish();
 }
 
-/// Within a batch the next save waits until handling messages has taken as long as the last save did. A flood
-/// on a slow disk would otherwise be saved sixteen messages at a time.
+/// Only a player waits for acknowledgements; others have a status each second. Within a batch the next save
+/// waits until handling messages has taken as long as the last save did. A flood on a slow disk would
+/// otherwise be saved sixteen messages at a time.
 bool Pairing::acknowledges_early() const {
-  return leads() && loop_.mono_us() - acknowledged_mono_us_ >= acknowledging_us_;
+  return leads() && (patient_ || heartbeat_.alive(bus::Role::player)) &&
+         loop_.mono_us() - acknowledged_mono_us_ >= acknowledging_us_;
 }
 
 void Pairing::after_batch(bool caught_up) {
@@ -118,58 +120,6 @@ void Pairing::after_batch(bool caught_up) {
       acknowledge_timer_.reset();
       if (unacknowledged_ > 0 && leads()) heartbeat_.publish();
     });
-}
-
-void Pairing::publish_new_problems() {
-  const std::int64_t now = loop_.mono_us();
-  std::int64_t wait = options_.problem_distance_us;
-  bool later = false;
-  for (std::size_t i = 0; i < channels_.size(); ++i) {
-    if (!accumulation_.pairs()[i].fresh()) continue;
-    const std::int64_t due = published_mono_us_[i] + options_.problem_distance_us;
-    if (now >= due) {
-      publish_problem(i);
-    } else {
-      later = true;
-      wait = std::min(wait, due - now);
-    }
-  }
-  if (later && !publish_timer_)
-    publish_timer_ = loop_.after(std::chrono::microseconds(wait), [this] {
-      publish_timer_.reset();
-      save();
-      if (leads()) publish_new_problems();
-    });
-}
-
-/// A problem may be sent only after its inputs are on the disk, or after the status has reported that the
-/// disk fails.
-bool Pairing::saved_or_known_not_to_be() const {
-  return !saved_ || saved_->complete() || !save_error_.empty();
-}
-
-void Pairing::publish_problem(std::size_t pair) {
-  EGOCAL_CHECK(leads(), "only the pairing process that leads sends problems");
-  EGOCAL_CHECK(saved_or_known_not_to_be(), "a problem is saved before it is sent");
-  PairSession& session = accumulation_.pairs()[pair];
-  if (const std::optional<scale_problem_t> scale = session.scale_message())
-    loop_.publish(channels_[pair].scale_problem, *scale);
-  std::optional<problem_t> message = session.message();
-  if (!message) return;
-  message->host = loop_.host();
-  loop_.publish(channels_[pair].problem, *message);
-  published_mono_us_[pair] = loop_.mono_us();
-  ++sent_;
-}
-
-void Pairing::publish_all_problems() {
-  save();
-  for (std::size_t i = 0; i < channels_.size(); ++i) publish_problem(i);
-}
-
-void Pairing::publish_motions() {
-  for (const MotionOut& motion : accumulation_.take_motions())
-    loop_.publish(channels_[motion.pair].motion, motion.message);
 }
 
 /// A player sends again what is missing.

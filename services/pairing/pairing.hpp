@@ -77,6 +77,7 @@ class Pairing {
   std::vector<Arrivals> arrivals_;
   std::vector<Channel> channels_;                // of the pairs
   std::vector<std::int64_t> published_mono_us_;  // each pair's problem
+  std::int64_t early_choice_mono_us_ = 0;        // the end of the last one that a problem needed
   std::optional<bus::Loop::TimerId> publish_timer_, acknowledge_timer_;
   std::set<std::int64_t> known_runs_;                      // of solvers and players
   ListeningClock listening_clock_;                         // looked at by watch_gaps()

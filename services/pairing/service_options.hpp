@@ -37,6 +37,11 @@ struct PairingServiceOptions {
   /// little. At 1 kHz each pose has its own answer; at higher rates one answer covers several
   /// (docs/benchmarks.md).
   std::int64_t problem_distance_us = 500;
+  /// An answer before the 64th instant of a pair needs a choice of weights of its own, of 2 ms, in which all
+  /// other messages wait. The choices of all pairs are this far apart at least [us], and the pair that was
+  /// answered the longest ago is the next. One or two pairs at 50 Hz have an answer at each pose, nineteen at
+  /// 100 Hz one each 0.2 s. Study: bench_processes latency --warm-up 0, docs/benchmarks.md.
+  std::int64_t early_choice_distance_us = 10'000;
   /// A disk that is full is tried again after this time [us].
   std::int64_t save_retry_us = 1'000'000;
   /// The first status of a process is answered at once. Beyond this number of processes that is not done:

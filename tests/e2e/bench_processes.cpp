@@ -35,7 +35,7 @@ const std::string bin = paths::bin_dir();
 
 struct Options {
   int pairs = 4;
-  double rate = 100, seconds = 20;
+  double rate = 100, seconds = 20, warm_up = 5;
   bool spread = false;
   bool monitor = false, state = false;
   std::int64_t motions = 100'000;
@@ -117,7 +117,7 @@ double processor_seconds(pid_t pid) {
 int latency(const Options& options) {
   const int sensors = options.pairs + 1;
   Setting setting(sensors);
-  const int warm_up = static_cast<int>(5 * options.rate);
+  const int warm_up = static_cast<int>(options.warm_up * options.rate);
   const int poses = static_cast<int>(options.seconds * options.rate) + warm_up;
   const auto trajectories = drive(sensors, poses, options.rate);
   bus::Loop loop(setting.url, bus::LoopOptions{.handle_signals = false});
@@ -313,6 +313,7 @@ int main(int argc, char** argv) {
   latency.add_option("--pairs", options.pairs).check(egocal::cli::Check::range(1, 64)).show_default();
   latency.add_option("--rate", options.rate, "[Hz] of each sensor").show_default();
   latency.add_option("--seconds", options.seconds).show_default();
+  latency.add_option("--warm-up", options.warm_up, "[s] that are not measured").show_default();
   latency.add_flag("--spread", options.spread, "sensors one after the other, not at the same instant");
   egocal::cli::App replay = app.add_subcommand("replay", "a log at full speed");
   replay.add_option("--motions", options.motions).show_default();

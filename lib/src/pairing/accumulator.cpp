@@ -293,11 +293,15 @@ void Accumulator::choose_all() {
   state_.attenuation = find_attenuation(plain_problem());
 }
 
-std::optional<Accumulator> Accumulator::with_early_choice() const {
+bool Accumulator::chooses_early() const {
   const std::uint64_t instants = state_.instants.empty() ? 0 : state_.instants.back().number;
   const bool has_chosen = state_.next_choice != options_.accumulator.first_choice;
-  if ((options_.stride && options_.balance) || has_chosen || instants < options_.accumulator.early_choice)
-    return std::nullopt;
+  return !(options_.stride && options_.balance) && !has_chosen &&
+         instants >= options_.accumulator.early_choice;
+}
+
+std::optional<Accumulator> Accumulator::with_early_choice() const {
+  if (!chooses_early()) return std::nullopt;
   Accumulator early(*this);
   early.choose_all();
   return early;

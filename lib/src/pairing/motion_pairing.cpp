@@ -122,13 +122,17 @@ void MotionPairing::take(const std::vector<Instant>& instants, std::vector<Motio
 }
 
 PairingCounts MotionPairing::counts() const {
+  return counts_of(current());
+}
+
+PairingCounts MotionPairing::counts_of(const Accumulator& accumulator) const {
   PairingCounts counts;
   counts.poses_a = poses_a_;
   counts.poses_b = poses_b_;
   counts.synchronised = synchronised();
-  counts.matched = current().inlier_pairs();
-  counts.outliers = current().outlier_pairs();
-  counts.jumps = current().jumps();
+  counts.matched = accumulator.inlier_pairs();
+  counts.outliers = accumulator.outlier_pairs();
+  counts.jumps = accumulator.jumps();
   for (const Rejections* stage : {&rejections_, &synchroniser_.state().rejections,
                                   &screening_.state().rejections, &accumulator_.rejections()})
     for (std::size_t i = 0; i < counts.rejected.size(); ++i) counts.rejected[i] += stage->by_reason[i];

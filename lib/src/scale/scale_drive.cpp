@@ -223,7 +223,7 @@ std::optional<Problem> ScaleDrive::problem() const {
 }
 
 PairingCounts ScaleDrive::counts() const {
-  PairingCounts counts = pairing_.counts();
+  PairingCounts counts = pairing_.running_counts();  // of what is not replaced here
   counts.outliers = state_.solved_left_out;
   counts.matched = state_.solved_motions - std::min(state_.solved_motions, state_.solved_left_out);
   return counts;

@@ -91,6 +91,8 @@ class Accumulator {
   /// made now. Empty at other times. This accumulator goes on without it, so that no later answer depends on
   /// when it was asked.
   std::optional<Accumulator> with_early_choice() const;
+  /// Whether there would be one.
+  bool chooses_early() const;
 
   /// What is known so far, at the choice in force.
   Problem problem() const;

@@ -72,6 +72,11 @@ class MotionPairing {
   /// Of the motion pairs that push() returns.
   int stride_of_pairs() const { return accumulator_.choice().stride; }
   PairingCounts counts() const;
+  /// The same, but before the first choice of motions as if none were made for an answer: costs nothing.
+  PairingCounts running_counts() const { return counts_of(accumulator_); }
+  /// problem() and what goes with it cost a choice, about 2 ms: it is a short drive, and no answer was asked
+  /// for since the newest instant.
+  bool costs_a_choice() const { return early_is_old_ && accumulator_.chooses_early(); }
   /// Instants of both streams so far, as in counts().
   std::uint64_t synchronised() const { return synchroniser_.state().synchronised; }
   const PairingOptions& options() const { return options_; }
@@ -88,6 +93,7 @@ class MotionPairing {
   void take(const std::vector<Instant>& instants, std::vector<MotionPair>& pairs);
   void settle();
   const Accumulator& current() const;
+  PairingCounts counts_of(const Accumulator& accumulator) const;
 
   PairingOptions options_;
   std::uint64_t poses_a_ = 0, poses_b_ = 0;
