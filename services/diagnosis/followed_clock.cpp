@@ -34,27 +34,47 @@ void FollowedClock::add(std::int64_t time_us, std::int64_t offset_us) {
   offsets_ = std::move(kept);
 }
 
-std::int64_t FollowedClock::at(std::int64_t time_us) const {
+/// The offsets as they would be if the clock had never been set.
+std::vector<OffsetSince> FollowedClock::without_jumps() const {
+  std::vector<OffsetSince> result = offsets_;
+  std::int64_t set_by = 0;
+  for (std::size_t i = result.size(); i-- > 1;) {
+    const OffsetSince &from = offsets_[i - 1], &to = offsets_[i];
+    const std::int64_t change = to.offset_us - from.offset_us;
+    const double least = options_.least_jump_rate * static_cast<double>(to.time_us - from.time_us);
+    if (std::abs(change) >= options_.least_jump_us && static_cast<double>(std::abs(change)) > least)
+      set_by += change;
+    result[i - 1].offset_us += set_by;
+  }
+  return result;
+}
+
+namespace {
+
+std::int64_t offset_at(const std::vector<OffsetSince>& offsets, std::int64_t time_us) {
   const auto after =
-      std::upper_bound(offsets_.begin(), offsets_.end(), time_us,
+      std::upper_bound(offsets.begin(), offsets.end(), time_us,
                        [](std::int64_t time, const OffsetSince& offset) { return time < offset.time_us; });
-  if (after == offsets_.begin()) return offsets_.front().offset_us;
-  if (after == offsets_.end()) return offsets_.back().offset_us;
+  if (after == offsets.begin()) return offsets.front().offset_us;
+  if (after == offsets.end()) return offsets.back().offset_us;
   const OffsetSince &from = *std::prev(after), &to = *after;
   const double part =
       static_cast<double>(time_us - from.time_us) / static_cast<double>(to.time_us - from.time_us);
   return from.offset_us + std::llround(part * static_cast<double>(to.offset_us - from.offset_us));
 }
 
+}  // namespace
+
 Trajectory FollowedClock::at_newest_offset(Trajectory b) const {
   if (offsets_.empty()) return b;
-  const std::int64_t newest = offsets_.back().offset_us;
+  const std::vector<OffsetSince> offsets = without_jumps();
+  const std::int64_t newest = offsets.back().offset_us;
   Trajectory result;
   result.reserve(b.size());
   for (StampedPose& pose : b) {
     // at its own time of a, which the offset itself moves: what a drift of 1 % leaves is squared
-    const std::int64_t about = pose.time_us + at(pose.time_us + newest);
-    pose.time_us += at(about) - newest;
+    const std::int64_t about = pose.time_us + offset_at(offsets, pose.time_us + newest);
+    pose.time_us += offset_at(offsets, about) - newest;
     // where pairing found another offset, poses may change places
     if (result.empty() || pose.time_us > result.back().time_us) result.push_back(pose);
   }

@@ -38,10 +38,13 @@ std::string remedy_of(const bus::Rig& rig, const bus::PairConfig& pair, const Fi
   if ((code == "scale" || code == "units") && finding.value && *finding.value > 0)
     return scale_remedy(rig, pair, *finding.value);
   if (code == "clock_offset") return "In the rig file: time_offset = \"auto\" for this pair.";
+  if (code == "clock_step" && !pair.time_offset)
+    return "Do not set clocks during a drive: the new one is followed half a minute or more later. Reset the "
+           "pair "
+           "(key r in the monitor).";
   if (code == "clock_step")
     return "Do not set clocks during a drive; time_offset = \"auto\" in the rig file follows them. Reset the "
-           "pair (key r in "
-           "the monitor).";
+           "pair (key r in the monitor).";
   if (code == "clock_drift")
     return "Synchronise the clocks; until then time_offset = \"auto\" in the rig file follows them.";
   if (code.starts_with("inverted_"))

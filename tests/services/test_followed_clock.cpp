@@ -55,6 +55,24 @@ TEST(FollowedClock, AChangeOfTheOffsetIsWhereItWas) {
   EXPECT_EQ(corrected[1].time_us, start_us + 90 * second);
 }
 
+// Set by 0.5 s after a minute, which pairing knew of after 92 s: of a step at each of the two times something
+// in between was reported.
+TEST(FollowedClock, WhatAClockWasSetByIsLeftWhereItWas) {
+  FollowedClock clock;
+  for (std::int64_t i = 0; i < 1200; ++i)
+    clock.add(start_us + i * second / 10, i < 920 ? 10 * i : 10 * i - 500'000);
+  const std::int64_t newest = 10 * 1199 - 500'000;
+  Trajectory b;
+  for (std::int64_t i = 0; i < 1200; ++i)
+    b.push_back({start_us + i * second / 10 - 10 * i + (i < 600 ? 0 : 500'000), {}});
+  const Trajectory corrected = clock.at_newest_offset(b);
+  ASSERT_EQ(corrected.size(), b.size());
+  for (std::int64_t i = 0; i < 1200; ++i)
+    EXPECT_NEAR(static_cast<double>(corrected[static_cast<std::size_t>(i)].time_us + newest - start_us),
+                static_cast<double>(i * second / 10 - (i < 600 ? 500'000 : 0)), 60)
+        << "the drift is taken off, " << i;
+}
+
 // Of a pair whose scale is found, a problem may come again with a newer offset.
 TEST(FollowedClock, TheLastOffsetOfOneTimeCounts) {
   FollowedClock clock;
