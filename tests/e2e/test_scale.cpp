@@ -6,6 +6,7 @@
 #include "egocal/bus/verdict.hpp"
 #include "processes.hpp"
 #include "support/mistakes.hpp"
+#include "support/turning_bodies.hpp"
 
 namespace egocal::test_scale {
 namespace {
@@ -76,6 +77,25 @@ TEST_F(LiveScale, IsFoundWithTheExtrinsic) {
   EXPECT_LT(error.translation, 0.05);
   EXPECT_TRUE(until([&] { return verdict && verdict->seq == problem->seq; }));
   EXPECT_TRUE(verdict && verdict->verdict != "contradictory") << verdict->reason;
+}
+
+/// A head that pans and tilts about one point: each scale has a lever arm of its own. Offline the lever arm
+/// is not observable (TEST Scale, WithoutItTheLeverArmIsNotObservable); live an answer would state one.
+TEST_F(LiveScale, ThatNoMotionShowsHasNoAnswerBesideIt) {
+  for (const char* program : {"egocal-pairing", "egocal-global", "egocal-fast", "egocal-diagnosis"})
+    start(program);
+  const testing::Streams streams = testing::pan_tilt(3, 0.005);
+  play(events({streams.a, testing::lengthened(streams.b, 1 / scale)}));
+  ASSERT_TRUE(until([&] { return question && answer && answer->seq == question->seq && answer->seq > 100; }));
+  const bus::CheckedScale* checked = check.find("left", "right", question->session);
+  ASSERT_TRUE(checked);
+  EXPECT_TRUE(checked->verified);
+  EXPECT_FALSE(checked->solution.observable);
+  EXPECT_FALSE(answer->observable);
+  EXPECT_EQ(question->scale, 0) << "none is in force";
+  // what is sent is sent again each second
+  const auto any = [&] { return problem || !answers.empty() || verdict; };
+  EXPECT_FALSE(until(any, 2500ms)) << "of the lever arm at a scale that nothing shows";
 }
 
 }  // namespace
