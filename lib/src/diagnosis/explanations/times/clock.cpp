@@ -143,6 +143,10 @@ void refine(const Streams& streams, double ClockModel::*number, double width, in
   }
 }
 
+void refine_offset(const Streams& streams, Trial& best) {
+  refine(streams, &ClockModel::offset, 0.05, 3, best);
+}
+
 }  // namespace
 
 std::vector<float> turning_of(const Trajectory& trajectory) {
@@ -168,6 +172,16 @@ Explained explained_by(const Streams& streams, const ClockModel& clock) {
   return result;
 }
 
+std::optional<ClockFit> fit_offset(const Streams& streams, const ClockModel& start) {
+  const std::optional<CoarseClocks> coarse = coarse_clocks(streams, start);
+  if (!coarse) return std::nullopt;
+  Trial offset = tried(streams, {start.offset, start.rate, coarse->offset.middle});
+  take_better(offset, tried(streams, coarse->offset));
+  if (!std::isfinite(offset.misfit)) return std::nullopt;
+  refine_offset(streams, offset);
+  return std::move(offset.fit);
+}
+
 ClockFits fit_clock(const Streams& streams, const ClockModel& start) {
   const std::optional<CoarseClocks> coarse = coarse_clocks(streams, start);
   if (!coarse) return {};
@@ -178,14 +192,14 @@ ClockFits fit_clock(const Streams& streams, const ClockModel& start) {
   const bool alike = same(offset.fit.clock, drift.fit.clock);
   ClockFits fits;
   if (std::isfinite(offset.misfit)) {
-    refine(streams, &ClockModel::offset, 0.05, 3, offset);
+    refine_offset(streams, offset);
     fits.offset = offset.fit;
   }
   if (std::isfinite(drift.misfit)) {
     if (alike)
       drift = std::move(offset);
     else
-      refine(streams, &ClockModel::offset, 0.05, 3, drift);
+      refine_offset(streams, drift);
     const double span = to_seconds(streams.a.back().time_us - streams.a.front().time_us);
     refine(streams, &ClockModel::rate, 0.05 / std::max(1.0, span), 2, drift);
     refine(streams, &ClockModel::offset, 0.01, 1, drift);

@@ -55,5 +55,7 @@ struct ClockFits {
 /// under a wrong reading no extrinsic fits and every motion looks like an outlier, so it minimises the same
 /// robust misfit that explanations are compared by, on a coarse grid, as it is tried for several readings.
 ClockFits fit_clock(const Streams& streams, const ClockModel& start);
+/// Its offset alone, in a third of the time.
+std::optional<ClockFit> fit_offset(const Streams& streams, const ClockModel& start);
 
 }  // namespace egocal::detail

@@ -70,11 +70,11 @@ std::optional<ClockFit> clock_of(const Evidence& evidence, const PartOfDrive& pa
                                  const ClockStepOptions& tuning) {
   if (part.a.size() < tuning.least_motions || part.b.size() < tuning.least_motions) return std::nullopt;
   const std::vector<float> turning_a = turning_of(part.a), turning_b = turning_of(part.b);
-  ClockFits fits =
-      fit_clock(streams_of(evidence, part.a, part.b, turning_a, turning_b), {evidence.clock.offset, 0, 0});
-  if (!fits.offset || fits.offset->explained.motions.all.size() < tuning.least_motions) return std::nullopt;
-  for (Motion& motion : fits.offset->explained.motions.all) motion.time += part.shift;
-  return std::move(fits.offset);
+  std::optional<ClockFit> fit =
+      fit_offset(streams_of(evidence, part.a, part.b, turning_a, turning_b), {evidence.clock.offset, 0, 0});
+  if (!fit || fit->explained.motions.all.size() < tuning.least_motions) return std::nullopt;
+  for (Motion& motion : fit->explained.motions.all) motion.time += part.shift;
+  return fit;
 }
 
 std::optional<ClockStep> step_at(const Evidence& evidence, double time, const DiagnosisOptions& options,
