@@ -97,12 +97,10 @@ void Pairing::take(std::uint16_t channel, const bus::Arrival& arrival) {
   if (unacknowledged_ >= options_.acknowledge_every && acknowledges_early()) heartbeat_.publish();
 }
 
-/// Only a player waits for acknowledgements; others have a status each second. Within a batch the next save
-/// waits until handling messages has taken as long as the last save did. A flood on a slow disk would
-/// otherwise be saved sixteen messages at a time.
+/// Within a batch the next save waits until handling messages has taken as long as the last save did. A flood
+/// on a slow disk would otherwise be saved sixteen messages at a time.
 bool Pairing::acknowledges_early() const {
-  return leads() && (patient_ || heartbeat_.alive(bus::Role::player)) &&
-         loop_.mono_us() - acknowledged_mono_us_ >= acknowledging_us_;
+  return leads() && loop_.mono_us() - acknowledged_mono_us_ >= acknowledging_us_;
 }
 
 void Pairing::after_batch(bool caught_up) {
