@@ -4,14 +4,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "../support/bounded_drive.hpp"
 #include "../support/findings.hpp"
 #include "../support/random_motion.hpp"
 #include "../support/simulated_drive.hpp"
+#include "diagnosis/explanations/times/late_turning.hpp"
 #include "diagnosis/streams/contradicting_runs.hpp"
 #include "egocal/calibrate.hpp"
+#include "egocal/evaluation/errors.hpp"
 
 namespace egocal::test_towed_part {
 namespace {
@@ -112,6 +118,58 @@ TEST(TowedPart, IsNotSuspectedInCleanDrives) {
     EXPECT_EQ(detail::contradicting_runs(of_four(instants), instants.period, to_pose(streams.T)).runs, 0u)
         << seed;
   }
+}
+
+detail::Evidence gathered(const testing::Streams& streams) {
+  return detail::gather(streams.a, streams.b, {}, 0.5, DiagnosisOptions());
+}
+
+/// A cart of a metre turns in and out within a tenth of a second: too little for motions that contradict.
+constexpr Towing cart{0.3, 0.8, 3};
+
+TEST(TowedPart, TurnsLaterAboutOneAxis) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const testing::Streams streams = towed(seed, cart, 0.002);
+    const detail::Evidence evidence = gathered(streams);
+    const std::optional<detail::LateTurning> found =
+        detail::late_turning(evidence.instants, evidence.given.explained);
+    ASSERT_TRUE(found) << seed;
+    EXPECT_EQ(found->side, Side::b);
+    EXPECT_NEAR(found->seconds, (cart.hitch + cart.length) / 11, 0.02) << seed;
+    EXPECT_LT(std::abs(found->others), 0.5 * found->seconds) << seed;
+    // the answer is that of the axle of the car; with late rotations it is the place of the sensor
+    EXPECT_GT(extrinsic_error(streams.T, found->T_a_b_as_given).translation, 0.8) << seed;
+    EXPECT_LT(extrinsic_error(streams.T, found->T_a_b).translation, 0.4) << seed;
+  }
+}
+
+TEST(TowedPart, OfAMetreIsNamed) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const testing::Streams streams = towed(seed, cart, 0.002);
+    const Calibration calibration = calibrate(streams.a, streams.b);
+    EXPECT_GE(calibration.verdict, Verdict::doubtful) << seed << ": " << calibration.reason;
+    const Finding* const moved = find(calibration, "mount_moved");
+    ASSERT_NE(moved, nullptr) << seed;
+    EXPECT_FALSE(moved->certain);
+    EXPECT_NE(moved->message.find("about one axis b turns about"), std::string::npos) << moved->message;
+  }
+}
+
+// All axes are late then, and the clock is what is named.
+TEST(TowedPart, IsNotAClockThatDiffers) {
+  testing::Streams streams = towed(1, cart, 0.002);
+  streams.b = streams.a;
+  for (StampedPose& pose : streams.b) pose.time_us += 50'000;
+  const detail::Evidence evidence = gathered(streams);
+  EXPECT_FALSE(detail::late_turning(evidence.instants, evidence.given.explained));
+}
+
+TEST(TowedPart, DoesNotTurnLaterInCleanDrives) {
+  for (const Terrain terrain : {Terrain::rough, Terrain::free})
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const detail::Evidence evidence = gathered(testing::drive(terrain, seed));
+      EXPECT_FALSE(detail::late_turning(evidence.instants, evidence.given.explained)) << seed;
+    }
 }
 
 /// The mounting of one sensor turns to and fro: the rotations of the drive contradict for half a second each.

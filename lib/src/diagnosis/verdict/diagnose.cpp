@@ -23,6 +23,7 @@
 #include "diagnosis/explanations/times/held_stream.hpp"
 #include "diagnosis/explanations/times/late_positions.hpp"
 #include "diagnosis/explanations/times/late_rotations.hpp"
+#include "diagnosis/explanations/times/late_turning.hpp"
 #include "diagnosis/motions/answer_change.hpp"
 #include "diagnosis/motions/fit.hpp"
 #include "diagnosis/motions/standing_still.hpp"
@@ -154,6 +155,7 @@ void add_what_is_beside(const Foreseen& foreseen, const DiagnosisOptions& option
   if (pairing.mode != Mode::planar) {
     name_late_rotations(evidence, pairing.max_gap, options, wrong_stream, result.findings);
     name_early_rotations(evidence, options, answered, result);
+    name_late_turning(evidence, options, answered, result);
   }
   name_askew_rotations(evidence, answered, options, result.findings);
   add_interpolated_streams(foreseen, options, answered, result);

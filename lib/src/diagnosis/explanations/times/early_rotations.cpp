@@ -84,16 +84,6 @@ Finding worded_steered(const EarlyRotations& found, const Answered& answered) {
   return finding;
 }
 
-/// Something else that early rotations may look like. A small offset of the clock may be between the times of
-/// rotations and of positions; of a large one the times would not be linear.
-bool explains_early(const Finding& finding, const DiagnosisOptions& options) {
-  const bool small_offset = finding.code == "clock_offset" && finding.value &&
-                            std::abs(*finding.value) <= options.clock_check.widest;
-  return (certain_of_either(finding) && !finding.code.starts_with("undersampled_") && !small_offset) ||
-         finding.code == "mount_moved" || finding.code == "scale_change" ||
-         finding.code == "too_little_motion" || finding.code == "samples";
-}
-
 /// Of the stream that explains more, and none of one that shows nothing.
 std::optional<EarlyRotations> early_of_either(const Evidence& evidence, const EarlyRotationsOptions& early) {
   std::optional<EarlyRotations> found =
@@ -108,6 +98,16 @@ std::optional<EarlyRotations> early_of_either(const Evidence& evidence, const Ea
 }
 
 }  // namespace
+
+/// A small offset of the clock may be between the times of
+/// rotations and of positions; of a large one the times would not be linear.
+bool explains_early(const Finding& finding, const DiagnosisOptions& options) {
+  const bool small_offset = finding.code == "clock_offset" && finding.value &&
+                            std::abs(*finding.value) <= options.clock_check.widest;
+  return (certain_of_either(finding) && !finding.code.starts_with("undersampled_") && !small_offset) ||
+         finding.code == "mount_moved" || finding.code == "scale_change" ||
+         finding.code == "too_little_motion" || finding.code == "samples";
+}
 
 double EarlyRotations::sigmas() const {
   return stddev > 0 ? std::abs(seconds) / stddev : 0;

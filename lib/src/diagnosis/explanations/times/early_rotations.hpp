@@ -53,6 +53,9 @@ struct EarlyRotations {
 std::optional<EarlyRotations> early_rotations(const Instants& instants, const Explained& given, Side side,
                                               const EarlyRotationsOptions& options = {});
 
+/// Something else that rotations of another time may look like.
+bool explains_early(const Finding& finding, const DiagnosisOptions& options);
+
 /// Names late_positions_a and _b, uncertain, and mount_moved, uncertain, where such rotations move the answer
 /// by more than it states, and adds by how much to answered.timing_stddev and result.timing_stddev. The
 /// blocks of the drive show nothing of that where a tenth of them has a turn, so it is asked for by the

@@ -14,25 +14,35 @@ namespace egocal::detail {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+namespace {
+
+Vector3d main_axis(const Motions& motions, Side side) {
+  Matrix3d turns = Matrix3d::Zero();
+  for (const Motion& motion : motions.all) {
+    const Vector3d turn = rotation_log(to_pose(side == Side::b ? motion.b : motion.a).rotation);
+    turns += turn * turn.transpose();
+  }
+  return Eigen::SelfAdjointEigenSolver<Matrix3d>(turns).eigenvectors().col(2);
+}
+
+}  // namespace
+
 StreamOfTwoTimes::StreamOfTwoTimes(const Instants& instants, const Explained& given, Side side,
                                    const TwoTimesOptions& options)
+    : StreamOfTwoTimes(instants, given, side, options, main_axis(given.motions, side)) {}
+
+StreamOfTwoTimes::StreamOfTwoTimes(const Instants& instants, const Explained& given, Side side,
+                                   const TwoTimesOptions& options, const Vector3d& axis)
     : instants_(instants),
       side_(side),
       T_(side == Side::b ? to_pose(given.fit.T) : inverse(to_pose(given.fit.T))),
       R_(T_.rotation.toRotationMatrix()),
+      about_axis_(axis * axis.transpose()),
       span_(static_cast<std::size_t>(given.motions.stride)),
       reach_(std::clamp<std::size_t>(
           static_cast<std::size_t>(std::ceil(0.5 * options.least_span / std::max(instants.period, 1e-6))), 1,
           options.most_instants)),
-      longest_(options.across_a_gap * static_cast<double>(span_ + 2 * reach_) * instants.period) {
-  Matrix3d turns = Matrix3d::Zero();
-  for (const Motion& motion : given.motions.all) {
-    const Vector3d turn = rotation_log(to_pose(side == Side::b ? motion.b : motion.a).rotation);
-    turns += turn * turn.transpose();
-  }
-  const Vector3d axis = Eigen::SelfAdjointEigenSolver<Matrix3d>(turns).eigenvectors().col(2);
-  about_axis_ = axis * axis.transpose();
-}
+      longest_(options.across_a_gap * static_cast<double>(span_ + 2 * reach_) * instants.period) {}
 
 bool StreamOfTwoTimes::has(std::size_t i) const {
   const std::size_t last = i + span_ + reach_;
@@ -40,13 +50,25 @@ bool StreamOfTwoTimes::has(std::size_t i) const {
          instants_.time(last) - instants_.time(i - reach_) <= longest_;
 }
 
-std::vector<LinearMotion> StreamOfTwoTimes::motions(const Explained& given, std::size_t most) const {
-  const std::vector<std::size_t> begins = begins_of(instants_, given.motions);
-  const std::size_t n = std::min(begins.size(), most);
-  std::vector<LinearMotion> motions;
+std::vector<std::size_t> StreamOfTwoTimes::begins(const Explained& given, std::size_t most) const {
+  const std::vector<std::size_t> all = begins_of(instants_, given.motions);
+  const std::size_t n = std::min(all.size(), most);
+  std::vector<std::size_t> begins;
   for (std::size_t k = 0; k < n; ++k)
-    if (const std::size_t i = begins[k * begins.size() / n]; has(i)) motions.push_back(motion(i));
+    if (const std::size_t i = all[k * all.size() / n]; has(i)) begins.push_back(i);
+  return begins;
+}
+
+std::vector<LinearMotion> StreamOfTwoTimes::motions(const Explained& given, std::size_t most) const {
+  std::vector<LinearMotion> motions;
+  for (const std::size_t i : begins(given, most)) motions.push_back(motion(i));
   return motions;
+}
+
+std::vector<LinearMotion> StreamOfTwoTimes::rotations(const Explained& given, std::size_t most) const {
+  std::vector<LinearMotion> rotations;
+  for (const std::size_t i : begins(given, most)) rotations.push_back(rotation(i));
+  return rotations;
 }
 
 /// With rotations R(t + r) and positions p(t + s) in place of R(t) and p(t), and the mounting moved by a turn
@@ -65,10 +87,22 @@ LinearMotion StreamOfTwoTimes::motion(std::size_t i) const {
   result.translation =
       R_.transpose() * (other.rotation * T_.translation + other.translation - T_.translation) -
       own.translation;
-  result.of_rotation << apart, Matrix3d::Zero(), rates_from.turning - turned * rates_to.turning,
-      Vector3d::Zero();
-  result.of_translation << -cross_matrix(own.translation), apart, rates_from.turning.cross(own.translation),
+  const Vector3d begins = about_axis_ * rates_from.turning, ends = about_axis_ * rates_to.turning;
+  result.of_rotation << apart, Matrix3d::Zero(), begins - turned * ends, Vector3d::Zero();
+  result.of_translation << -cross_matrix(own.translation), apart, begins.cross(own.translation),
       from.own.rotation.conjugate() * (rates_from.velocity - rates_to.velocity);
+  return result;
+}
+
+LinearMotion StreamOfTwoTimes::rotation(std::size_t i) const {
+  const Rates rates_from = rates(i), rates_to = rates(i + span_);
+  LinearMotion result = motion(i);
+  const Matrix3d turned = Matrix3d::Identity() - result.of_rotation.leftCols<3>(),
+                 about_others = Matrix3d::Identity() - about_axis_;
+  result.of_rotation.col(time_about_others) =
+      about_others * rates_from.turning - turned * about_others * rates_to.turning;
+  result.of_translation.setZero();
+  result.translation.setZero();
   return result;
 }
 
@@ -89,8 +123,7 @@ StreamOfTwoTimes::Rates StreamOfTwoTimes::rates(std::size_t i) const {
   const Vector3d by_own = rotation_log(from.own.rotation.conjugate() * to.own.rotation),
                  by_other =
                      R_.transpose() * rotation_log(from.other.rotation.conjugate() * to.other.rotation);
-  return {about_axis_ * (by_own + by_other) / (2 * seconds),
-          (to.own.translation - from.own.translation) / seconds};
+  return {(by_own + by_other) / (2 * seconds), (to.own.translation - from.own.translation) / seconds};
 }
 
 }  // namespace egocal::detail

@@ -23,15 +23,22 @@ struct TwoTimesOptions {
 
 /// The two numbers beside the mounting are times [s], > 0 where they are those of later times.
 constexpr int time_of_rotations = first_number, time_of_positions = second_number;
+constexpr int time_about_axis = first_number, time_about_others = second_number;
 
-/// One stream and its mounting in the other one. The rotations count about the axis that it mostly turns
-/// about: a vehicle shakes about the others.
+/// One stream and its mounting in the other one. The rotations count about one axis, in the frame of the
+/// stream: a vehicle shakes about the others. Without an axis it is the one that the stream mostly turns
+/// about.
 class StreamOfTwoTimes {
  public:
   StreamOfTwoTimes(const Instants& instants, const Explained& given, Side side,
                    const TwoTimesOptions& options);
+  StreamOfTwoTimes(const Instants& instants, const Explained& given, Side side,
+                   const TwoTimesOptions& options, const Eigen::Vector3d& axis);
   /// Of the drive, in its order; those without poses to measure rates from are omitted.
   std::vector<LinearMotion> motions(const Explained& given, std::size_t most) const;
+  /// The same of the rotations alone: the two numbers are times of the turning about that axis, and of the
+  /// turning about all others.
+  std::vector<LinearMotion> rotations(const Explained& given, std::size_t most) const;
   /// The pose of b in a with the mounting moved.
   DualQuaternion T_a_b(const MountNumbers& x) const;
 
@@ -39,13 +46,14 @@ class StreamOfTwoTimes {
   struct Poses {
     Pose own, other;
   };
-  /// Turning about the axis [rad/s] in the stream's frame, as both streams see it; velocity in its world
-  /// [m/s].
+  /// Turning [rad/s] in the stream's frame, as both streams see it; velocity in its world [m/s].
   struct Rates {
     Eigen::Vector3d turning, velocity;
   };
   bool has(std::size_t i) const;
   LinearMotion motion(std::size_t i) const;
+  LinearMotion rotation(std::size_t i) const;
+  std::vector<std::size_t> begins(const Explained& given, std::size_t most) const;
   Poses at(std::size_t i) const;
   Rates rates(std::size_t i) const;
 
