@@ -11,6 +11,7 @@
 #include "diagnosis/explanations/contents/turned_lever_arm.hpp"
 #include "diagnosis/explanations/lengths/not_a_move.hpp"
 #include "diagnosis/explanations/lengths/unlike_columns.hpp"
+#include "diagnosis/explanations/times/late_column.hpp"
 #include "diagnosis/explanations/turning/turning_drift.hpp"
 #include "diagnosis/explanations/turning/turning_scale.hpp"
 #include "diagnosis/mount/exchanged_streams.hpp"
@@ -86,6 +87,14 @@ const std::optional<LateOfEither>& WrongStream::late() {
   return *late_;
 }
 
+const std::vector<Finding>& WrongStream::late_column() {
+  if (!late_column_)
+    late_column_ = mode_ == Mode::planar
+                       ? std::vector<Finding>()
+                       : detail::late_column(evidence_.instants, evidence_.given.explained, options_);
+  return *late_column_;
+}
+
 const std::vector<Finding>& WrongStream::best() {
   if (best_) return *best_;
   best_.emplace();
@@ -101,6 +110,7 @@ const std::vector<Finding>& WrongStream::best() {
     take({*std::move(arm)});
   const bool by_a_row = !contents().empty() && contents().front().code.starts_with("late_positions_");
   if (!by_a_row && late() && certain(*late(), options_)) take(worded(*late()));
+  take(late_column());
   take(columns());
   // small angles times a factor are nearly those of rotation vectors: both are named where both fit
   return *(best_ = more_likely(std::move(best), contents(), options_.alike));

@@ -25,7 +25,9 @@ class WrongStream {
   const std::vector<Finding>& columns();
   /// Late positions, certain or not; empty if there are too few motions.
   const std::optional<LateOfEither>& late();
-  /// The fault that explains most: contents, columns, late positions, a lever arm that was turned wrongly, or
+  /// One coordinate that is late.
+  const std::vector<Finding>& late_column();
+  /// The fault that explains most: contents, columns, late positions or one late coordinate, a lever arm that was turned wrongly, or
   /// turns that are too large.
   const std::vector<Finding>& best();
 
@@ -33,7 +35,7 @@ class WrongStream {
   const Evidence& evidence_;
   Mode mode_;
   const DiagnosisOptions& options_;
-  std::optional<std::vector<Finding>> contents_, columns_, best_;
+  std::optional<std::vector<Finding>> contents_, columns_, late_column_, best_;
   std::optional<std::optional<LateOfEither>> late_;
 };
 

@@ -21,6 +21,7 @@
 #include "diagnosis/explanations/times/clock_step.hpp"
 #include "diagnosis/explanations/times/early_rotations.hpp"
 #include "diagnosis/explanations/times/held_stream.hpp"
+#include "diagnosis/explanations/times/late_column.hpp"
 #include "diagnosis/explanations/times/late_positions.hpp"
 #include "diagnosis/explanations/times/late_rotations.hpp"
 #include "diagnosis/explanations/times/late_turning.hpp"
@@ -154,6 +155,7 @@ void add_what_is_beside(const Foreseen& foreseen, const DiagnosisOptions& option
   name_small_scale(evidence, options, answered, result);
   if (pairing.mode != Mode::planar) {
     name_late_rotations(evidence, pairing.max_gap, options, wrong_stream, result.findings);
+    widen_by_late_column(wrong_stream.late_column(), answered, result);
     name_early_rotations(evidence, options, answered, result);
     name_late_turning(evidence, options, answered, result);
   }
