@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "../support/mistakes.hpp"
 #include "../support/shaken_car.hpp"
 #include "../support/simulated_drive.hpp"
 #include "egocal/calibrate.hpp"
@@ -83,6 +84,20 @@ TEST(WanderingScale, AnotherScaleInAThirdOfTheDriveIsNamed) {
       EXPECT_NEAR(calibration.findings.front().time.value_or(0), 60, 3) << scale;
       EXPECT_GE(calibration.verdict, Verdict::doubtful) << scale;
     }
+  }
+}
+
+/// Wheels that wear: the one scale that fits best was certain, though at it the answer is as far off as
+/// before.
+TEST(WanderingScale, ThatGrowsIsNotNamedAsOneScale) {
+  for (const Terrain terrain : {Terrain::flat, Terrain::rough}) {
+    const testing::Streams streams = testing::noisy_drive(terrain, 0.002, 601);
+    const Calibration grown = calibrate(streams.a, testing::with_growing_scale(streams.b, 0.05));
+    ASSERT_FALSE(grown.findings.empty()) << grown.reason;
+    EXPECT_EQ(grown.findings.front().code, "scale_change") << grown.reason;
+    const Calibration constant = calibrate(streams.a, testing::lengthened(streams.b, 1.05));
+    ASSERT_FALSE(constant.findings.empty()) << constant.reason;
+    EXPECT_EQ(constant.findings.front().code, "scale") << constant.reason;
   }
 }
 

@@ -7,8 +7,10 @@
 #include <optional>
 #include <utility>
 
+#include "diagnosis/explanations/lengths/not_a_move.hpp"
 #include "diagnosis/explanations/times/late_positions.hpp"
 #include "diagnosis/explanations/turning/askew_rotations.hpp"
+#include "diagnosis/motions/robust_fit.hpp"
 #include "diagnosis/verdict/far_off.hpp"
 #include "egocal/diagnosis/certain_of_either.hpp"
 
@@ -43,6 +45,20 @@ void name_wrong_scale(const Evidence& evidence, const PairingOptions& pairing, c
     return one.code == "scale" || one.code == "units" || one.code == "inverted_both";
   });
   findings.push_back(*std::move(scale));
+}
+
+void replace_by_changing_scale(const Evidence& evidence, const PairingOptions& pairing,
+                               const Answered& answered, const DiagnosisOptions& options,
+                               std::vector<Finding>& findings) {
+  const auto one_scale = [](const Finding& one) { return one.certain && one.code == "scale"; };
+  const auto scale = std::find_if(findings.begin(), findings.end(), one_scale);
+  if (scale == findings.end()) return;
+  for (const Finding& finding : findings)
+    if (!one_scale(finding) && explains(finding, options)) return;
+  std::optional<Finding> changing = changing_scale(pairing, evidence, answered, options);
+  const double gain = compare(evidence.given.explained, evidence.scaled.explained).gain;
+  if (changing && changing->certain && std::log(changing->improvement) - gain > options.gain)
+    *scale = *std::move(changing);
 }
 
 void name_askew_rotations(const Evidence& evidence, const Answered& answered, const DiagnosisOptions& options,

@@ -148,6 +148,7 @@ void add_what_is_beside(const Foreseen& foreseen, const DiagnosisOptions& option
   const Evidence& evidence = foreseen.evidence;
   const PairingOptions& pairing = foreseen.pairing;
   name_wrong_scale(evidence, pairing, answered, options, result.findings);
+  replace_by_changing_scale(evidence, pairing, answered, options, result.findings);
   name_same_stream(evidence, answered, options, result);
   add_impossible_pace(evidence, options, result.findings);
   name_lengths_in_turns(evidence, answered, options, result.findings);
