@@ -27,8 +27,8 @@ class WrongStream {
   const std::optional<LateOfEither>& late();
   /// One coordinate that is late.
   const std::vector<Finding>& late_column();
-  /// The fault that explains most: contents, columns, late positions or one late coordinate, a lever arm that was turned wrongly, or
-  /// turns that are too large.
+  /// The fault that explains most: contents, columns, late positions or one late coordinate, a lever arm that
+  /// was turned wrongly, or turns that are too large.
   const std::vector<Finding>& best();
 
  private:
