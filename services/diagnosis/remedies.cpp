@@ -40,8 +40,7 @@ std::string remedy_of(const bus::Rig& rig, const bus::PairConfig& pair, const Fi
   if (code == "clock_offset") return "In the rig file: time_offset = \"auto\" for this pair.";
   if (code == "clock_step" && !pair.time_offset)
     return "Do not set clocks during a drive: the new one is followed half a minute or more later. Reset the "
-           "pair "
-           "(key r in the monitor).";
+           "pair (key r in the monitor).";
   if (code == "clock_step")
     return "Do not set clocks during a drive; time_offset = \"auto\" in the rig file follows them. Reset the "
            "pair (key r in the monitor).";

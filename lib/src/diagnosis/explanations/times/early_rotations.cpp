@@ -99,9 +99,8 @@ std::optional<EarlyRotations> early_of_either(const Evidence& evidence, const Ea
 
 }  // namespace
 
-/// A small offset of the clock may be between the times of
-/// rotations and of positions; of a large one the times would not be linear.
 bool explains_early(const Finding& finding, const DiagnosisOptions& options) {
+  // it may be between the times of rotations and of positions; of a large one they would not be linear
   const bool small_offset = finding.code == "clock_offset" && finding.value &&
                             std::abs(*finding.value) <= options.clock_check.widest;
   return (certain_of_either(finding) && !finding.code.starts_with("undersampled_") && !small_offset) ||

@@ -53,7 +53,7 @@ struct EarlyRotations {
 std::optional<EarlyRotations> early_rotations(const Instants& instants, const Explained& given, Side side,
                                               const EarlyRotationsOptions& options = {});
 
-/// Something else that rotations of another time may look like.
+/// Something else that rotations of another time may look like; a small offset of the clock is not.
 bool explains_early(const Finding& finding, const DiagnosisOptions& options);
 
 /// Names late_positions_a and _b, uncertain, and mount_moved, uncertain, where such rotations move the answer
