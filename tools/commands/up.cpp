@@ -46,11 +46,11 @@ void report(const std::string& line) {
   say("egocal up: " + line);
 }
 
-/// The reader of a pipe has gone, or the device takes nothing.
-bool output_is_gone() {
+/// The reader of a pipe has gone, or the device takes nothing: throws Error.
+void require_output() {
   pollfd out{STDOUT_FILENO, POLLOUT, 0};
-  return (poll(&out, 1, 0) == 1 && (out.revents & (POLLERR | POLLNVAL)) != 0) ||
-         write(STDOUT_FILENO, "", 0) < 0;
+  if ((poll(&out, 1, 0) == 1 && (out.revents & (POLLERR | POLLNVAL)) != 0) || write(STDOUT_FILENO, "", 0) < 0)
+    throw Error("standard output is gone: the monitor's lines cannot be written, and without it all end");
 }
 
 /// The folder of our own executable: the other programs are beside it.
@@ -122,6 +122,7 @@ bool write_reports(const UpOptions& options, const bus::Rig& rig, const std::str
 /// What can be known before any process is started.
 void check_before_start(const UpOptions& options, const bus::Rig& rig, const std::string& url) {
   for (const bus::PairConfig& pair : rig.pairs) static_cast<void>(bus::drive_options(rig, pair));
+  if (options.follow) require_output();
   if (!options.log.empty()) require_a_pair(options.log, rig);
   if (!options.state.empty()) check_place_of_state(options.state);
   const std::optional<std::string> other = pairing_heard(url, listen_before_start);
@@ -227,9 +228,7 @@ void run(const UpOptions& options, Interruptions& interruptions) {
       report("the statistics are kept in " + passing->file() + "; --state FILE continues with them");
     throw cli::Exit{1};
   }
-  if (options.follow && monitor_ended && output_is_gone())
-    throw Error(
-        "standard output is gone: the monitor's lines could not be written, and with it all have ended");
+  if (options.follow && monitor_ended) require_output();
   if (!options.log.empty()) conclude(options, rig, watch, supervisor.output_dir, monitor_ended);
 }
 
