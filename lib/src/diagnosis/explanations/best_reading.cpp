@@ -73,8 +73,8 @@ bool inverts_one(const Explanation& explanation) {
   return explanation.code == "inverted_a" || explanation.code == "inverted_b";
 }
 
-/// Of twins, which are each other with both streams inverted, the one under which a vehicle travels forward,
-/// or the one that fits better in metres.
+/// Whether x is preferred to y: the reading under which a vehicle travels forward, or else the one that fits
+/// better. Twins, which are each other with both streams inverted, are compared in metres.
 bool preferred(const Explanation& x, const Explanation& y, const HeadingOptions& options) {
   const Heading of_x = heading(x.explained.motions), of_y = heading(y.explained.motions);
   const bool x_forward = forward(of_x, options), y_forward = forward(of_y, options);

@@ -32,8 +32,8 @@ bool too_fast_unless_inverted(const Evidence& evidence, const Explanation& both,
   return impossible(evidence.given.explained.motions) && !impossible(both.explained.motions);
 }
 
-/// Of either the odometry under this reading or the mounting under the given one: single steps that fit far
-/// worse than the others, in runs.
+/// Number of jumps, either of the odometry under this reading or of the mounting under the given one. A jump
+/// is a run of single steps that fit far worse than the others.
 std::size_t jumps(const Evidence& evidence, const Explanation& both, const DiagnosisOptions& options) {
   // all of them: one that is not looked at may be the jump
   const Motions steps =

@@ -27,7 +27,8 @@ Finding plane_finding(char which, std::string claim, std::string cure, bool cert
   return finding;
 }
 
-/// Of the distance, which the motions do not show.
+/// Finding that the distance of a ground plane is wrong; empty where it may be right. The motions do not show
+/// this distance.
 std::optional<Finding> wrong_height(char which, double distance, bool metres, const PlaneTiltOptions& tilt) {
   if (distance > 0)
     return plane_finding(

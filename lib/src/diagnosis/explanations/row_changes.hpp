@@ -20,7 +20,7 @@ using AddedToRow = std::function<Eigen::Vector3d(std::size_t row)>;
 /// What each motion as given changes by, in the frame of its begin [m], of a stream of two rows at least.
 std::vector<Eigen::Vector3d> changes_of_rows(const Evidence& evidence, Side side, const AddedToRow& added);
 
-/// Of these changes, the multiple that suits the motions best.
+/// The multiple of these changes that suits the motions best.
 double best_multiple(const Explained& given, const std::vector<Eigen::Vector3d>& changes, Side side);
 
 /// Its standard deviation, where parts of the drive are omitted in turn, at most `most` of them; infinite

@@ -16,12 +16,12 @@ struct OtherContentsOptions {
   std::size_t followed = 4;
 };
 
-/// Of one stream: angles of the wrong sign, in the wrong place, order or unit; positions in the axes of the
-/// sensor; velocities or increments in place of positions; steps that were turned by the attitude of another
-/// instant (other_contents_steps.hpp); steps the wrong way round (reversed_steps.hpp); positions of the row
-/// before or after (late_by_a_row.hpp). Findings axes_a|_b, missing_a|_b and late_positions_a|_b, the best
-/// one first, with those that fit nearly as well. Velocities are looked for where no scale makes the motions
-/// agree.
+/// What one stream may hold in place of its poses: angles of the wrong sign, in the wrong place, order or
+/// unit; positions in the axes of the sensor; velocities or increments in place of positions; steps that were
+/// turned by the attitude of another instant (other_contents_steps.hpp); steps the wrong way round
+/// (reversed_steps.hpp); positions of the row before or after (late_by_a_row.hpp). Findings axes_a|_b,
+/// missing_a|_b and late_positions_a|_b, the best one first, with those that fit nearly as well. Velocities
+/// are looked for where no scale makes the motions agree.
 std::vector<Finding> other_contents(const Evidence& evidence, const DiagnosisOptions& options,
                                     const OtherContentsOptions& contents = {});
 

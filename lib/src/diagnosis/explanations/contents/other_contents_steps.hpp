@@ -13,8 +13,8 @@ namespace egocal::detail {
 /// Study: 18 simulated drives (cars, a truck, a tractor, a drone; rows of 2 to 100 Hz) with the mistake, 50
 /// of eleven kinds of vehicles without it, none of which is named, and twelve pairs of real sensors.
 struct TurnedStepsOptions {
-  /// Of a row, by which the part that suits the motions best may differ from what a mistake makes, at most:
-  /// 0.15 in those that were found.
+  /// Largest difference, as a part of a row, between the part that suits the motions best and the part that a
+  /// mistake makes: 0.15 in the mistakes that were found.
   double near = 0.2;
   /// Least distance of the part from zero, in its standard deviations (jack-knife). From `certain` on the
   /// finding is certain. Real pairs reach 1.7: the long way of cars drifts as if they were turned by 0.4 of a

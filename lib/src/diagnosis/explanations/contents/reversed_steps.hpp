@@ -19,7 +19,8 @@ struct ReversedStepsOptions {
   double like_mounting = 0.5;
 };
 
-/// Of one stream: registration gave the transform from each row to the one before where that to it was meant.
+/// Findings that the steps of one stream are the wrong way round: registration gave the transform from each
+/// row to the one before, where the transform from the one before to the row was meant.
 /// - reversed_steps: the whole step is inverted. Steps inverted in a look like those inverted in b, with the
 ///   same extrinsic, so one finding names either. Uncertain where a mounting explains the motions as well.
 /// - axes_a, axes_b: the rotation of each step alone is inverted.

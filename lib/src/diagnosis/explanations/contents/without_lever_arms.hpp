@@ -11,9 +11,10 @@ namespace egocal::detail {
 
 /// "Study" is tests/bench/mistake_study.cpp.
 struct LeverArmOptions {
-  /// Of the signed-rank test of such residuals. It asks less than that of the whole ones
-  /// (DiagnosisOptions::sigmas), which has chosen the explanation already: a lever arm found from one stream
-  /// alone is known less. With 3.5 two causes of the study's 132, both at 10 % noise, are not named.
+  /// Standard deviations, at least, of the signed-rank test of residuals without lever arms. This test asks
+  /// less than the test of the whole residuals (DiagnosisOptions::sigmas), which has chosen the explanation
+  /// already: a lever arm found from one stream alone is known less. With 3.5 two causes of the study's 132,
+  /// both at 10 % noise, are not named.
   double sigmas = 3;
 };
 

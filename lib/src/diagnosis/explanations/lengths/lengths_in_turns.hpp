@@ -28,9 +28,9 @@ struct LengthsInTurnsOptions {
 };
 
 struct LengthsInTurns {
-  /// Of the lengths of b against those of a: the part that is lost at the usual turning (half of the turning
-  /// is in motions that turn by more), < 0 where a loses, and its standard deviation by omitting parts of the
-  /// drive.
+  /// Part of the lengths of b, against those of a, that is lost at the usual turning (half of the turning is
+  /// in motions that turn by more), < 0 where a loses; and the standard deviation of this part, by omitting
+  /// parts of the drive.
   double lost = 0, stddev = 0;
   double straight_on = 1;  ///< factor of b's lengths while nothing turns
   double gain = 0;         ///< mean logarithm of the squared residuals with one scale over those with both

@@ -68,7 +68,7 @@ Run with_exact_ends(const Motions& motions, Run run, double factor, const Pose& 
   return run;
 }
 
-/// Of these motions alone: in the rest there is nothing to gain.
+/// The explanation for the motions of a run alone: in the rest there is nothing to gain.
 Explained within(const Explained& explained, const Run& run) {
   Explained part{part_of(explained.motions, run.first, run.last), explained.fit};
   const std::size_t all = explained.motions.all.size();

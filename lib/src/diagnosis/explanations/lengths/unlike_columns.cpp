@@ -28,8 +28,8 @@ using Eigen::Vector3d;
 using Order = std::array<int, 3>;
 constexpr std::array<Order, 6> orders{{{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {2, 1, 0}, {1, 2, 0}, {2, 0, 1}}};
 
-/// Of one stream in each motion: what the columns of the file changed by, and the world in the frame of its
-/// begin.
+/// One motion of one stream: what the columns of its file change by, and the orientation of its world in the
+/// frame of the begin of the motion.
 struct Change {
   Vector3d columns;
   Matrix3d back;

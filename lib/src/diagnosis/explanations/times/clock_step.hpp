@@ -25,8 +25,8 @@ struct ClockStepOptions {
   /// both are named: three times what chance makes of one number in the drives of the study.
   double alike = 0.15;
   /// Standard deviations of Wilcoxon's signed ranks, at least, of a gain of DiagnosisOptions::gain and more.
-  /// Of a drive of 16 blocks, half of which are on another clock, 2.6 are shown; that something contradicts
-  /// is known already.
+  /// A drive of 16 blocks, half of which are on another clock, shows 2.6. It is known already that something
+  /// contradicts.
   double sigmas = 2;
   /// The step differs from zero by more than this part of the distance of two poses, and by more than
   /// ClockSearchOptions::least: less is within what interpolation leaves.

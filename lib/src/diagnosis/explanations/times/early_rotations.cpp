@@ -84,7 +84,7 @@ Finding worded_steered(const EarlyRotations& found, const Answered& answered) {
   return finding;
 }
 
-/// Of the stream that explains more, and none of one that shows nothing.
+/// Early rotations of the stream that explains more by them; empty where neither stream shows any.
 std::optional<EarlyRotations> early_of_either(const Evidence& evidence, const EarlyRotationsOptions& early) {
   std::optional<EarlyRotations> found =
       early_rotations(evidence.instants, evidence.given.explained, Side::b, early);

@@ -18,8 +18,9 @@ namespace egocal::detail {
 struct EarlyRotationsOptions {
   TwoTimesOptions times;
   std::size_t least = 60;  ///< fewer do not show eight numbers and their scatter
-  /// Of the time between rotations and positions, and of the rotations from those of the other stream: where
-  /// it is the positions that have another time, LatePositions tells it better.
+  /// Least number of standard deviations of the time between rotations and positions, and of that between the
+  /// rotations of both streams. Where it is the positions that have another time, LatePositions tells it
+  /// better.
   double sigmas = 3.5;
   /// The positions have the time of the other stream, but for this part of that of the rotations, which is
   /// the clock's. Where the speed is constant the time of the positions is that of another lever arm, and

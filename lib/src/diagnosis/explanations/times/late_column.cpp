@@ -80,7 +80,7 @@ std::optional<int> most_explained(const Explained& given, const OfColumns& added
   return static_cast<int>(column);
 }
 
-/// Of the delay, by omitting parts of the drive.
+/// Standard deviation of the delay [s], by omitting parts of the drive.
 double stddev_of_delay(const Explained& explained, const std::vector<Vector3d>& added, Side side,
                        std::size_t parts) {
   Explained rest = explained;

@@ -21,7 +21,7 @@ namespace {
 using Eigen::Vector3d;
 using Changes = std::vector<Vector3d>;
 
-/// Of the positions of a stream about an instant, by those on either side.
+/// Velocities of a stream in its world [m/s]: about an instant, from the positions on either side of it.
 class Speeds {
  public:
   Speeds(const Instants& instants, const LatePositionsOptions& late)

@@ -44,7 +44,7 @@ std::optional<LateOfEither> late_of_either(const OnClock& clock, Side behind,
   return found;
 }
 
-/// Of all motions of the middle of the drive, by their rotations alone.
+/// Time offset by all motions in the middle of the drive, from their rotations alone.
 std::optional<TimeOffset> offset_of_rotations(const Evidence& evidence, double max_gap,
                                               const DiagnosisOptions& options,
                                               const LateRotationsOptions& late) {

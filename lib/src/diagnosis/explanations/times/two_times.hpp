@@ -34,7 +34,7 @@ class StreamOfTwoTimes {
                    const TwoTimesOptions& options);
   StreamOfTwoTimes(const Instants& instants, const Explained& given, Side side,
                    const TwoTimesOptions& options, const Eigen::Vector3d& axis);
-  /// Of the drive, in its order; those without poses to measure rates from are omitted.
+  /// Motions of the drive, in its order; those without poses to measure rates from are omitted.
   std::vector<LinearMotion> motions(const Explained& given, std::size_t most) const;
   /// The same of the rotations alone: the two numbers are times of the turning about that axis, and of the
   /// turning about all others.

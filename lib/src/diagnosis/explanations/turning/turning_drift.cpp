@@ -30,7 +30,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Of each motion, how long it takes [s].
+/// Duration of each motion [s].
 std::vector<double> durations_of(const Instants& instants, const Motions& motions) {
   std::vector<double> result;
   for (const std::size_t begin : begins_of(instants, motions)) {
