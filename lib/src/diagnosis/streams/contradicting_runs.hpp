@@ -23,8 +23,8 @@ struct ContradictingRunsOptions {
   /// wrong poses are few in a row (WrongPosesOptions::most_in_a_row).
   double least_instants = 8;
   std::size_t least_runs = 3;  ///< one or two are an odometry that was lost
-  /// Of the time of all motions. Sensors on trailers that were not named otherwise: 0.07 to 0.24; 140 clean
-  /// drives of 25 machines of an independent simulator: none.
+  /// Least part of the time of all motions that the runs last, together. Sensors on trailers that were not
+  /// named otherwise: 0.07 to 0.24; 140 clean drives of 25 machines of an independent simulator: none.
   double least_part = 0.05;
   /// Motions of this part of the length are looked at, too: a long one hides a vehicle that turns in for half
   /// a second.

@@ -18,18 +18,18 @@ struct HeldOptions {
   double rounding =
       1e-13;       ///< of the length and of 1: what computing with a pose adds to a value that repeats
   double gap = 5;  ///< in median steps: a longer one is a gap between drives or between samples
-  /// Of the way that the values go, the part in steps behind a repeated value. Held twice it is all; joined
-  /// from 7 Hz into 10 Hz it is 0.43; a machine that rests, or turns on the spot, now and then goes on by
-  /// many steps.
+  /// Least part of the way of the values that is in steps behind a repeated value. Where each value is held
+  /// twice it is all of the way; joined from 7 Hz into 10 Hz it is 0.43; a machine that rests, or turns on
+  /// the spot, now and then goes on by many steps.
   double share = 0.3;
-  /// Of the rows that repeat a value, those in which the other half goes on: a machine at rest repeats
-  /// both.
+  /// Least part of the rows that repeat a value in which the other half of the pose goes on: a machine at
+  /// rest repeats both halves.
   double going_on = 0.8;
   /// Least length of a step behind a repeated value, in digits of the file. Coordinates that are rounded to a
   /// metre also repeat while the sensor moves; their steps have one digit.
   double digits = 10;
-  /// Of the values, those that last for as many rows as the median one, by a row more or less: what is held
-  /// comes at a rate of its own, and what is rounded lasts for as long as the sensor is slow.
+  /// Least part of the values that last for as many rows as the median one, by a row more or less: what is
+  /// held comes at a rate of its own, and what is rounded lasts for as long as the sensor is slow.
   double even = 0.9;
 };
 

@@ -23,7 +23,7 @@ struct Lines {
   double rate() const { return seconds > 0 ? static_cast<double>(moving - straight) / seconds : 0; }
 };
 
-/// Of whole poses, of positions alone and of rotations alone.
+/// Lines of whole poses, of positions alone and of rotations alone.
 struct Kinds {
   Lines poses, positions, rotations;
 };

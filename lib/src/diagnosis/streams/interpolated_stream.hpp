@@ -38,7 +38,7 @@ struct Bends {
   double seconds = 0;  ///< since the pose before
 };
 
-/// Of a pose that is neither the first nor the last one. Empty where stamps repeat.
+/// Bends at pose i, which is neither the first nor the last one. Empty where stamps repeat.
 std::optional<Bends> bends_at(const Trajectory& poses, std::size_t i,
                               const InterpolatedStreamOptions& options = {});
 

@@ -128,7 +128,7 @@ bool alternate(const std::vector<FrameStep>& steps, const std::vector<Jump>& lab
   return followed > 0 && enough(alternating, least, followed);
 }
 
-/// Of the poses whose frame is known, the part in the frame that has fewer.
+/// Share of the poses in the frame that has fewer, among those whose frame is known.
 double share_of(const std::vector<FrameStep>& steps, const std::vector<Jump>& labels) {
   std::array<double, 2> count{};
   std::optional<bool> other;
@@ -253,7 +253,8 @@ class JumpsOfHalf {
     }
     return median(std::move(lengths)) > std::max(options_.across * offset_.norm(), 2 * noise());
   }
-  /// Of late stamps the jumps are a part of the speed, by the stamps or by even times, whichever are right.
+  /// Whether the jumps are of constant size. Jumps of late stamps are a part of the speed instead, by the
+  /// stamps or by even times, whichever are right.
   bool constant(const OtherFrame& frame) const {
     std::vector<double> sizes, of_steps, of_speeds;
     for (std::size_t i = 0; i < labels_.size(); ++i) {

@@ -24,14 +24,14 @@ struct FrameJumpsOptions {
   std::size_t tries = 32;   ///< steps whose residual is tried as the offset of the frames
   /// Steps are alike within this part of the offset: balls about staying, there and back do not touch.
   double radius = 1.0 / 3;
-  /// Of the steps, those within one of the balls: 1, with 5 % outliers 0.87, and where the stream is
+  /// Least part of the steps within one of the balls: 1, with 5 % outliers 0.87, and where the stream is
   /// interpolated between two frames 0.75 and more. Noise of a pose that is uniform in one direction: 0.69.
   double least_explained = 0.75;
   double least_jumps = 0.1;  ///< of the steps; below, pairing omits the poses as outliers
   /// Poses in a row of the frame that has fewer, in the mean: 1 of a slower publisher, 1.1 to 2 by chance. A
   /// mount that moves between two places stays there for longer.
   double most_in_a_row = 3;
-  /// Of the jumps that follow another one, those to the other frame: 0.95 to 1, by chance 0.5.
+  /// Least part of the jumps following another one that lead to the other frame: 0.95 to 1, by chance 0.5.
   double least_alternating = 0.9;
   /// Median residual of steps that stay, and deviation of the jumps from each other, over the offset: 0.1 %
   /// to 9 %, and 12 % where the noise of a motion is that. In balls that are evenly filled it is 17 % and

@@ -19,7 +19,8 @@ struct WayInBursts {
   double within = 0, between = 0;
 };
 
-/// Of the parts of a pose that are vectors in the world: step(i) leads from pose i to the next one.
+/// Way of the positions, or of the rotations, within bursts and between them. step(i), a vector in the world,
+/// leads from pose i to the next one.
 template <typename Step>
 WayInBursts way_of(const std::vector<bool>& within, std::size_t first, std::size_t reach, const Step& step) {
   WayInBursts way;

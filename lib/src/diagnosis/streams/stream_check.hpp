@@ -15,7 +15,8 @@ namespace egocal::detail {
 
 struct StreamCheckOptions {
   std::size_t most = 4000;  ///< steps that are looked at; bounds the cost of a drive of any length
-  /// Of the length and of 1: motions that agree better are equal to the digits of their files,
+  /// Largest difference of equal motions, as a part of the length and of 1: those that agree better are equal
+  /// to the digits of their files,
   double same = 1e-9;
   double same_part = 1e-4;  ///< where they also agree to this part of the motion
   double rounding =

@@ -13,7 +13,7 @@ struct TurningAxis {
   double tilt = 0;  ///< root mean square of how far the motions move that axis [rad]
 };
 
-/// Of the motions of one sensor; there must be some.
+/// Turning axis of the motions of one sensor; there must be some.
 TurningAxis turning_axis(const Motions& motions, Side side);
 
 /// Root mean square of what both sensors differ by in turning about their axes [rad]; there must be motions.
