@@ -10,7 +10,7 @@ namespace egocal::detail {
 
 namespace {
 
-/// Of the typical squares: smaller ones count as so much, as in compare().
+/// Floor of the squares, as a part of the typical one: smaller squares count as the floor, as in compare().
 constexpr double part_of_typical = 0.25;
 
 Division divided(const Motions& motions, std::size_t at, const RobustFitOptions& options) {

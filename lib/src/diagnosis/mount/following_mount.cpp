@@ -24,8 +24,9 @@ using FollowingRelation =
     Eigen::Matrix<double, 36, 1>;  ///< columns of the 3 x 12 numbers from a course to a rotation
 using FollowedRows = Eigen::Matrix<double, 3, 36>;
 
-/// Of the rotation between the sensors over a motion, in the frame of b at its begin [rad], and what b does.
-/// Where b is turned by d before it and by e after it, the change is d - turned * e.
+/// Change of the rotation between the sensors over a motion, in the frame of b at the begin of the motion
+/// [rad], and what b does. Where b is turned by d before the motion and by e after it, the change is
+/// d - turned * e.
 struct FollowedChange {
   Eigen::Vector3d rotation;
   Eigen::Matrix3d turned;  ///< by b over the motion
@@ -34,7 +35,7 @@ struct FollowedChange {
   Eigen::Vector3d by_clock() const { return before.head<3>() - turned * after.head<3>(); }
 };
 
-/// Of b at instant i, as one of the sensors sees it, from `window` instants on either side.
+/// Behaviour of b at instant i, as one of the sensors sees it, from `window` instants on either side.
 Behaviour behaviour_at(const Instants& instants, std::size_t i, std::size_t window, Side seen_by,
                        const DualQuaternion& T_a_b) {
   const auto pose = [&](std::size_t k) {

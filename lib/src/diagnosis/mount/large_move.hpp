@@ -28,8 +28,8 @@ struct LargeMoveOptions {
   /// Part of the drive that unexplained_part() finds, at least and at most: less may be a sharp turn or wrong
   /// poses, of more the answer is that of the other part.
   double least_part = 1.0 / 3, most_part = 2.0 / 3;
-  /// Of the typical motion: where the median one of a window is smaller the sensors stand, and only wrong
-  /// poses move. As find_moves() ignores motions (MovesOptions::least_motion).
+  /// Part of the typical motion: where the median motion of a window is smaller the sensors stand, and only
+  /// wrong poses move. find_moves() ignores motions likewise (MovesOptions::least_motion).
   double least_motion = 0.1;
 };
 

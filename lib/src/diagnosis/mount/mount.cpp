@@ -68,7 +68,7 @@ void word(const Move& move, const Answered& answered, double begin, double long_
       ". Before it the answer is " + answer + "." + alike);
 }
 
-/// Of a mount that moved and fell back.
+/// Words the two findings of a mount that moved and fell back.
 void word_falling_back(Finding& first, Finding& second) {
   const double moved = *first.time, back = *second.time;
   second.change = MountingChange::back;
@@ -117,7 +117,8 @@ void keep_those_shown_before(const Strides& strides, const Answered& answered,
   });
 }
 
-/// Of the strongest evidence, without the motions of the last seconds as well.
+/// Chance of the strongest evidence, or the chance without the motions of the last seconds where that is
+/// larger.
 double lasting_chance(const Strides& strides, const Answered& answered, const DiagnosisOptions& options,
                       double chance) {
   const MountCheckOptions& mount = options.mount;

@@ -92,7 +92,7 @@ std::optional<LedSteps> steps_of_bump(const Instants& instants, const PoseReadin
   return result;
 }
 
-/// Of the motions over a fourth of the time that a mount creeps.
+/// Steps of the motions over a fourth of the time that a mount creeps.
 std::optional<LedSteps> steps_of_creep(const Instants& instants, const PoseReading& reading, const Move& move,
                                        double begin, const MotionSampleOptions& motions,
                                        const StepOptions& options) {
@@ -129,7 +129,8 @@ struct Along {
   double stddev = INFINITY;
 };
 
-/// Of translation or rotation, from the components of the change that are shown.
+/// How far the translation or the rotation of a step leads along the change, from the components of the
+/// change that are shown.
 Along along(const Move& move, const Vector6d& change, const Vector6d& step, const Vector6d& noise,
             Eigen::Index group, const StepOptions& options) {
   double change2 = 0, step2 = 0, product = 0;

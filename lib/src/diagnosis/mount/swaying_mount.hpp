@@ -24,9 +24,9 @@ struct SwayOptions {
   std::size_t most_motions = 500;   ///< of one stride, evenly spread
   std::size_t least_motions = 8;    ///< of one stride
   double longest_stride = 1.0 / 3;  ///< as a part of the drive
-  /// Of the squared changes, the largest ones that do not count: one pose in twenty that is wrong in each
-  /// stream is in a tenth of them in one step, and in a third of them in a time. Of a mount that is loose
-  /// half of them show it.
+  /// Part of the squared changes, the largest ones, that does not count: one pose in twenty that is wrong in
+  /// each stream is in a tenth of the changes in one step, and in a third of the changes in a time. Where a
+  /// mount is loose half of the changes show it.
   double largest_part = 1.0 / 3;
   double before = 1.0 / 8;               ///< of the time: there the change is smaller
   double most_before = 0.5;              ///< as a part of the change; random walks have 0.35
@@ -45,12 +45,13 @@ struct RotationChange {
   double mean_square = 0;  ///< [rad^2]
 };
 
-/// Of the change of the rotations at an instant by interpolation through `poses` [rad^2]; zero where no pose
-/// is interpolated.
+/// Mean square of the change of the rotations at an instant by interpolation through `poses` poses [rad^2];
+/// zero where no pose is interpolated.
 double mean_square_by_interpolation(const Instants& instants, std::size_t poses,
                                     const SwayOptions& options = {});
 
-/// At T_a_b, for times from that between two instants to a third of the drive.
+/// Changes of the rotation between the sensors at T_a_b, over times from that between two instants to a third
+/// of the drive.
 std::vector<RotationChange> rotation_changes(const Instants& instants, const DualQuaternion& T_a_b,
                                              const MotionSampleOptions& motions,
                                              const SwayOptions& options = {});
