@@ -111,7 +111,8 @@ Body body_of(const Answered& answered, const Matrix8d& Q, const Matrix6d& shown)
   return body;
 }
 
-/// Of the motions of a manoeuvre: out of step, so that the axes are shown by themselves.
+/// Factors of the amplitudes of a manoeuvre along three axes, one vector for each of its motions. They are
+/// out of step, so that each axis is shown by itself.
 const std::array<Eigen::Vector3d, motions_each>& waves() {
   static const std::array<Eigen::Vector3d, motions_each> all = [] {
     std::array<Eigen::Vector3d, motions_each> result;

@@ -230,7 +230,7 @@ std::vector<Matrix3d> nearest_orthogonal(const Matrix3d& W) {
   return {one, U * Vector3d(1, 1, -1).asDiagonal() * V.transpose()};
 }
 
-/// Of which stream the positions are wrong.
+/// Whether the positions of one stream are wrong, or those of both.
 enum class WrongAxes { of_one, of_both };
 
 /// The orthogonal matrix, mirrored as W is, that suits the steps best: from W, which has six unknowns more

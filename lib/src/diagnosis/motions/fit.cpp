@@ -18,8 +18,9 @@ double median_if_any(const std::vector<double>& values) {
   return values.empty() ? std::numeric_limits<double>::quiet_NaN() : quantile(values, 0.5);
 }
 
-/// Of b's size to a's, the median over what both travelled: the smaller of both in units of its own stream's
-/// usual one, so that jumps of one stream do not matter, however long.
+/// Ratio of b's size to a's: the median, weighted by what both streams moved. The weight of a motion is the
+/// smaller of its two sizes, each in units of the usual size of its own stream, so that jumps of one stream
+/// do not matter, however long.
 double median_ratio(const std::vector<Motion>& motions, double (*size_a)(const Motion&),
                     double (*size_b)(const Motion&)) {
   std::vector<double> a, b;

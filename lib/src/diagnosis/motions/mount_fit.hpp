@@ -38,7 +38,7 @@ class MountFit {
  public:
   MountFit(const std::vector<LinearMotion>& motions, const MountFitOptions& options);
   MountNumbers best(FreeNumbers free) const { return without(options_.parts, free); }
-  /// Of a linear function of the numbers, by omitting parts.
+  /// Standard deviation of a linear function of the numbers, by omitting parts. of: its coefficients.
   double stddev(const MountNumbers& of) const;
   /// Mean logarithm of the squares at x over those at y, above the noise.
   double gain(const MountNumbers& x, const MountNumbers& y) const;

@@ -20,7 +20,8 @@ struct Foreseen {
   DiagnosisOptions options;
   Evidence evidence;
   std::vector<Finding> findings{};  ///< about the streams, where there are enough motions
-  /// That a stream freezes at times. The streams and the evidence are then those without its repeated poses.
+  /// Findings that a stream freezes at times. Where there are any, the streams and the evidence are those
+  /// without its repeated poses.
   std::vector<Finding> frozen{};
   std::shared_ptr<const AwakeStreams> awake{};
   bool has_offset = false;
@@ -31,7 +32,7 @@ struct Foreseen {
 Foreseen foresee_streams(const Trajectory& a, const Trajectory& b, const PairingOptions& pairing,
                          const DiagnosisOptions& options);
 
-/// Of a stream that repeats its pose.
+/// Whether a finding says that a stream repeats its pose.
 bool of_frozen_stream(const Finding& finding);
 
 }  // namespace egocal::detail

@@ -15,7 +15,8 @@ namespace egocal::detail {
 
 namespace {
 
-/// Of one of the streams. That the streams as given fit in some directions is no evidence against it.
+/// Whether a finding names another reading of one of the streams. The fit of the streams as given in some
+/// directions is no evidence against such a reading.
 bool is_another_reading(const Finding& finding) {
   const std::string_view code = finding.code;
   return code == "inverted_a" || code == "inverted_b" || code.starts_with("quaternion_order_") ||

@@ -28,7 +28,7 @@ struct Disagreement {
   double part() const { return size / limit; }
 };
 
-/// Of translation and rotation.
+/// Disagreement of the translation and that of the rotation.
 struct Disagreements {
   Disagreement translation, rotation;
   double part() const { return std::max(translation.part(), rotation.part()); }
