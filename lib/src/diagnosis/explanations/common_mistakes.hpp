@@ -23,10 +23,10 @@ std::vector<Candidate> combined_mistakes();
 /// An explanation by motions of `stride` instants.
 Explanation explained(const Evidence& evidence, int stride, const char* code, const PoseReading& a,
                       const PoseReading& b, const DiagnosisOptions& options);
-/// By those that are compared.
+/// An explanation by the motions that are compared.
 Explanation explained(const Evidence& evidence, const char* code, const PoseReading& a, const PoseReading& b,
                       const DiagnosisOptions& options);
-/// The same with a free scale of b.
+/// The explanation with a free scale of b.
 Explanation with_scale(const Explanation& explanation, const DiagnosisOptions& options);
 
 /// What leaves more than a part of the typical motion unexplained (DiagnosisOptions::explains) explains
@@ -41,7 +41,7 @@ bool better(const Comparison& comparison, double least_log_ratio, const Diagnosi
 /// much.
 bool number_explains(const Comparison& comparison, const DiagnosisOptions& options);
 
-/// Not worded yet.
+/// A finding that is not worded yet.
 Finding finding_of(std::string code, const Explained& explained, const Comparison& comparison, bool certain);
 Finding finding_of(const Explanation& explanation, const Comparison& comparison, bool certain);
 

@@ -29,7 +29,7 @@ std::vector<Finding>::const_iterator certain_axes_of_both(const std::vector<Find
                       [](const Finding& one) { return one.certain && one.code == "axes_both"; });
 }
 
-/// Both where their best ones explain about as much.
+/// The findings of which the best one explains more; both where the best ones explain about as much.
 std::vector<Finding> more_likely(std::vector<Finding> first, std::vector<Finding> second, double alike) {
   if (first.empty()) return second;
   if (second.empty()) return first;

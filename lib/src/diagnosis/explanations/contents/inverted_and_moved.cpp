@@ -28,7 +28,7 @@ double loss_of_part(const Explained& given, const Motions& inverted, std::size_t
   return loss_in_metres(x, y);
 }
 
-/// The same of each part between the moves, together.
+/// loss_of_part() of all parts between the moves, together.
 double loss_of_parts(const Explained& given, const Motions& inverted, const std::vector<Finding>& moves,
                      const DiagnosisOptions& options) {
   const std::vector<std::size_t> bounds = bounds_of_parts(inverted, moves);

@@ -23,7 +23,7 @@ bool inverts_one_stream(const Finding& finding) {
   return finding.code == "inverted_a" || finding.code == "inverted_b";
 }
 
-/// With this stream alone inverted.
+/// The explanation with one stream alone inverted. code: inverted_a or inverted_b.
 Explanation with_inverted(const Evidence& evidence, const std::string& code,
                           const DiagnosisOptions& options) {
   PoseReading inverted;

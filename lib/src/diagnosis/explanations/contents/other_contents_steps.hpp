@@ -40,8 +40,8 @@ struct TurnedSteps {
   Explained explained;            ///< with the steps turned back
 };
 
-/// Those that the drive shows, the one that fits best first; empty for nearly every drive. Positions that are
-/// late or early by a constant time fit worse than each.
+/// Turned steps that the drive shows, the part that fits best first; empty for nearly every drive. Positions
+/// that are late or early by a constant time fit worse than each.
 std::vector<TurnedSteps> turned_steps(const Evidence& evidence, const DiagnosisOptions& options,
                                       const TurnedStepsOptions& turned = {});
 

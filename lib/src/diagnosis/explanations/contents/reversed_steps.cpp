@@ -19,14 +19,14 @@ namespace egocal::detail {
 
 namespace {
 
-/// What of each step is the wrong way round.
+/// The part of each step that is the wrong way round.
 enum class Reversed { step, rotation };
 
 Pose right_step(const Pose& step, Reversed reversed) {
   return reversed == Reversed::step ? inverse(step) : Pose{step.rotation.conjugate(), step.translation};
 }
 
-/// What a motion is nearly where its steps are short.
+/// The right motion, nearly, where the steps of the motion are short.
 Pose right_motion(const Pose& motion, Reversed reversed) {
   const Pose other_way = inverse(motion);
   return reversed == Reversed::step ? other_way : Pose{other_way.rotation, -other_way.translation};
@@ -104,7 +104,7 @@ bool is_promising(const Motions& motions, Side side, Reversed reversed, const Di
   return quick_fit(other, options.fit).typical < search.promising * quick_fit(motions, options.fit).typical;
 }
 
-/// Back to front and upside down.
+/// Whether b is mounted back to front and upside down, nearly (ReversedStepsOptions::like_mounting).
 bool like_mounting(const DualQuaternion& T, const ReversedStepsOptions& search) {
   const Rotation flipped(0, 0, 1, 0);  // half a turn about y
   return rotation_log(to_pose(T).rotation * flipped.conjugate()).norm() < search.like_mounting;

@@ -31,7 +31,7 @@ namespace {
 
 using ScaleGuesses = std::vector<ScaleSolution>;
 
-/// Its poses of a part of the time.
+/// Poses of a part of the time.
 Trajectory between(const Trajectory& trajectory, std::int64_t begin_us, std::int64_t end_us) {
   Trajectory result;
   for (const StampedPose& pose : trajectory)
@@ -118,9 +118,9 @@ bool changes_while_moving(const ScaleCourse& course, const Explained& given, std
   });
 }
 
-/// With a course of the scale of b; empty where it does not change, or where a mount still moves. moved:
-/// whether one seems to move as given; where none does, the scales may leave small moves, as each is wrong by
-/// a little, but must explain more than those.
+/// Finding scale_change by a course of the scale of b; empty where the scale does not change, or where a
+/// mount still moves. moved: whether a mount seems to move as given; where none does, the scales may leave
+/// small moves, as each is wrong by a little, but must explain more than those.
 std::optional<Finding> changing_scale(const PairingOptions& pairing, const Evidence& evidence,
                                       const Answered& answered, const ScaleCourse& course, bool moved,
                                       const DiagnosisOptions& options) {

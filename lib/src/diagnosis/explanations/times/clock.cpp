@@ -68,7 +68,7 @@ double misfit(const Explained& explained) {
   return sum / static_cast<double>(explained.fit.squares.size());
 }
 
-/// From the turning rates alone.
+/// Clocks from the turning rates alone.
 struct CoarseClocks {
   ClockModel offset, drift;
 };

@@ -24,7 +24,7 @@ struct Streams {
   double max_gap = 0.5;      ///< [s]
   double motion_length = 1;  ///< of the motions that are compared [s]
   DiagnosisOptions options;
-  /// From each pose to the next, see turning_of() [rad].
+  /// Angles from each pose to the next, see turning_of() [rad].
   std::span<const float> turning_a, turning_b;
   std::size_t each = 1;  ///< every such pose of the slower stream is looked at
   ClockGridOptions grid{};
@@ -41,7 +41,7 @@ struct ClockFit {
   Explained explained;
 };
 
-/// Empty where the streams never turn.
+/// The clocks that fit best; empty where the streams never turn.
 struct ClockFits {
   std::optional<ClockFit> offset;
   std::optional<ClockFit> drift;  ///< offset and rate
@@ -55,7 +55,7 @@ struct ClockFits {
 /// under a wrong reading no extrinsic fits and every motion looks like an outlier, so it minimises the same
 /// robust misfit that explanations are compared by, on a coarse grid, as it is tried for several readings.
 ClockFits fit_clock(const Streams& streams, const ClockModel& start);
-/// Its offset alone, in a third of the time.
+/// The offset of b's clock alone, in a third of the time.
 std::optional<ClockFit> fit_offset(const Streams& streams, const ClockModel& start);
 
 }  // namespace egocal::detail

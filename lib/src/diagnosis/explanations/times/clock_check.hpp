@@ -31,7 +31,7 @@ std::optional<Finding> small_clock_offset(const Trajectory& a, const Trajectory&
 /// motion repeats. T_a_b: the answer with that one. Needs offset.rival.
 Finding rival_clock_offset(const TimeOffset& offset, const DualQuaternion& T_a_b);
 
-/// The same where that answer is off by more than the tolerance, in words; empty: it is not.
+/// The rival in words, where its answer is off by more than the tolerance; empty: it is not.
 std::string rival_in_words(const Finding& rival, const Pose& T_a_b, const Observability& observability,
                            const DiagnosisOptions& options);
 

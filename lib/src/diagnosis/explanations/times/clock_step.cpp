@@ -27,7 +27,7 @@ struct ClockStep {
   Explained explained{};
 };
 
-/// Both streams on one side of a time.
+/// The parts of both streams on one side of a time.
 struct PartOfDrive {
   Trajectory a, b;
   double shift = 0;  ///< from the first pose of the drive to that of the part [s]

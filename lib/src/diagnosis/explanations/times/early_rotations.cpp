@@ -26,7 +26,7 @@ bool shows_two_times(const EarlyRotations& found, const EarlyRotationsOptions& e
              early.most_of_positions * std::abs(found.of_rotations);
 }
 
-/// In the directions that are known.
+/// How far two times move the answer, in the directions that are known.
 Vector6d moved_by_two_times(const EarlyRotations& found, const Answered& answered) {
   Vector6d moved = frame_a_difference(found.T_a_b_as_given, found.T_a_b);
   for (std::size_t i = 0; i < 6; ++i)

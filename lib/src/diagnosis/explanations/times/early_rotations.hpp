@@ -40,7 +40,7 @@ struct EarlyRotations {
   Side side = Side::b;
   double seconds = 0;  ///< > 0: they are those of later times
   double stddev = 0;   ///< of it, by omitting parts of the drive [s]
-  /// The same of the rotations alone, against the other stream [s].
+  /// Time of the rotations alone against the other stream, and its standard deviation [s].
   double of_rotations = 0, of_rotations_stddev = 0;
   double gain = 0;  ///< mean logarithm of the squared residuals with one time over those with two
   /// The answers with two times, and without any.
@@ -49,8 +49,9 @@ struct EarlyRotations {
   double sigmas() const;
 };
 
-/// By the motions as given. Linear least squares of the extrinsic, of the time of the rotations about the
-/// axis that the stream mostly turns about, and of the time of the positions. Empty: too few motions.
+/// Early rotations of one stream by the motions as given: linear least squares of the extrinsic, of the time
+/// of the rotations about the axis that the stream mostly turns about, and of the time of the positions.
+/// Empty: too few motions.
 std::optional<EarlyRotations> early_rotations(const Instants& instants, const Explained& given, Side side,
                                               const EarlyRotationsOptions& options = {});
 

@@ -35,13 +35,13 @@ Finding worded(const Held& found, char which) {
   return finding;
 }
 
-/// Under which the streams belong together but for what is held.
+/// Clock and scale under which the streams belong together but for what is held.
 struct Corrected {
   ClockModel clock;
   double scale = 1;  ///< of the lengths of b
 };
 
-/// By what was found for certain.
+/// Clock and scale by what was found for certain.
 Corrected corrected_by(const std::vector<Finding>& findings, const ClockModel& given) {
   Corrected result{given, 1};
   for (const Finding& one : findings) {
@@ -112,7 +112,7 @@ struct HeldHalf {
   Pose T;
 };
 
-/// As the streams are given; and else under what was found.
+/// The half that is held, with the streams as given, or else under what was found.
 std::optional<HeldHalf> held_half(Side side, const Evidence& evidence, const Corrected& corrected,
                                   double max_gap, const DiagnosisOptions& diagnosis,
                                   const HeldStreamOptions& options) {

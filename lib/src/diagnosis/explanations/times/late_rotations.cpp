@@ -35,8 +35,8 @@ OnClock on_clock(const Evidence& evidence, double offset, double max_gap, const 
   return result;
 }
 
-/// At this clock. Filters delay: the likelier stream is the one whose rotations are behind those of the other
-/// one.
+/// Late positions of either stream at this clock; empty: none that are certain. Filters delay: the likelier
+/// stream is the one whose rotations are behind those of the other one.
 std::optional<LateOfEither> late_of_either(const OnClock& clock, Side behind,
                                            const DiagnosisOptions& options) {
   std::optional<LateOfEither> found = best_late_positions(clock.instants, clock.explained, options, behind);
@@ -58,7 +58,7 @@ std::optional<TimeOffset> offset_of_rotations(const Evidence& evidence, double m
   return estimate_time_offset(part.a, part.b, search);
 }
 
-/// Where the offset in force is a compromise.
+/// Findings where the offset in force is a compromise.
 std::vector<Finding> between_two_clocks(const Evidence& evidence, double max_gap,
                                         const DiagnosisOptions& options, WrongStream& wrong,
                                         const LateRotationsOptions& late) {

@@ -74,7 +74,7 @@ bool is_late(const LateTurning& found, const LateTurningOptions& late) {
          std::abs(found.others) < late.most_of_others * found.seconds && found.gain > late.least_gain;
 }
 
-/// In the directions that are known.
+/// How far late turning moves the answer, in the directions that are known.
 Vector6d moved_by_late_turning(const LateTurning& found, const Answered& answered) {
   Vector6d moved = frame_a_difference(found.T_a_b_as_given, found.T_a_b);
   for (std::size_t i = 0; i < 6; ++i)

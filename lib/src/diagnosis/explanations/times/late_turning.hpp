@@ -44,7 +44,8 @@ struct LateTurning {
   double sigmas() const;
 };
 
-/// By the motions as given, about the axis that shows it most. Empty: too few motions, or no axis does.
+/// Late turning by the motions as given, about the axis that shows it most. Empty: too few motions, or no
+/// axis shows it.
 std::optional<LateTurning> late_turning(const Instants& instants, const Explained& given,
                                         const LateTurningOptions& options = {});
 

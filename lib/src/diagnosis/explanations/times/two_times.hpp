@@ -36,8 +36,8 @@ class StreamOfTwoTimes {
                    const TwoTimesOptions& options, const Eigen::Vector3d& axis);
   /// Motions of the drive, in its order; those without poses to measure rates from are omitted.
   std::vector<LinearMotion> motions(const Explained& given, std::size_t most) const;
-  /// The same of the rotations alone: the two numbers are times of the turning about that axis, and of the
-  /// turning about all others.
+  /// The motions by their rotations alone: the two numbers are times of the turning about the axis, and of
+  /// the turning about all others.
   std::vector<LinearMotion> rotations(const Explained& given, std::size_t most) const;
   /// The pose of b in a with the mounting moved.
   DualQuaternion T_a_b(const MountNumbers& x) const;

@@ -79,7 +79,7 @@ struct PartSums {
     for (std::size_t side = 0; side < 2; ++side) with_worlds[side].add(other.with_worlds[side], sign);
   }
 
-  /// In the order of Askew::Kind.
+  /// Turns in the order of Askew::Kind.
   std::array<Vector3d, 4> turns() const {
     const Vector3d by_rotations = rotations.solved();
     return {by_rotations - positions.solved(6).segment<3>(3), with_worlds[0].solved(6).tail<3>(),

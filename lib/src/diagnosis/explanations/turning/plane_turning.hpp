@@ -10,7 +10,7 @@
 
 namespace egocal::detail {
 
-/// About what one sensor turns, in its own frame.
+/// Axis that one sensor turns about, in its own frame.
 struct TurningAxis {
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< of length 1, on the side of the plane's normal
   double off = 0;                                  ///< from the normal [rad], at most a right angle

@@ -50,7 +50,7 @@ struct Sums {
   Matrix6d A = Matrix6d::Zero();
   Vector6d b = Vector6d::Zero();
 
-  /// What is not shown stays zero.
+  /// The rate that the sums show; what is not shown stays zero.
   Vector3d rate() const {
     Matrix6d kept = A;
     kept.diagonal().array() += 1e-9 * A.trace() / 6 + 1e-300;
@@ -58,7 +58,7 @@ struct Sums {
   }
 };
 
-/// Beside a turn of the mounting: linear least squares of the rotations.
+/// The rate beside a turn of the mounting: linear least squares of the rotations.
 Rate rate_of(const Explained& explained, const std::vector<double>& durations,
              const TurningDriftOptions& options) {
   const Matrix3d R = to_pose(explained.fit.T).rotation.toRotationMatrix();
