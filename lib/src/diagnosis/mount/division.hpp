@@ -17,8 +17,8 @@ struct Division {
   RobustFit before, after;
 };
 
-/// Where two known answers meet best: at least `margin` motions are on either side. floor: of noise, added to
-/// the squares.
+/// Number of the motion where two known answers meet best: at least `margin` motions are on either side.
+/// floor: of noise, added to the squares.
 std::size_t best_place(const Motions& motions, const Division& division, std::size_t margin, double floor);
 
 /// The best of `places` divisions that are tried evenly, then of every motion, with robust answers. Outliers

@@ -29,10 +29,12 @@ struct FollowingOptions {
   /// Part of the changes that the relation explains in parts it was not found in, at least. Mounts that
   /// follow: 0.34 to 0.82; 234 clean drives: below 0.2, or of_interpolation.
   double explained = 0.3;
-  /// In 95 % of the time it is smaller; at least [rad]: as large as what users call wrong.
+  /// Least size of the change that the relation explains, which is smaller in 95 % of the time [rad]: as
+  /// large as what users call wrong.
   double least_change = std::numbers::pi / 180;
-  /// And this many times what the better interpolation changes (SwayOptions::of_interpolation): a bicycle
-  /// that leans faster than it is measured has 14, mounts 80 and more.
+  /// And that change is at least this many times what the better interpolation changes
+  /// (SwayOptions::of_interpolation): a bicycle that leans faster than it is measured has 14, mounts 80 and
+  /// more.
   double of_interpolation = 30;
 };
 

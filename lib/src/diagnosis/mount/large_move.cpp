@@ -111,7 +111,7 @@ double time_of(const Division& division, const Instants& instants, const Pose& w
   return steps.all[std::min(place, steps.all.size() - 1)].time;
 }
 
-/// By motions of one length.
+/// Finding of a large move by motions of one length.
 std::optional<Finding> move_of(const Instants& instants, int stride, const DiagnosisOptions& options,
                                const LargeMoveOptions& large) {
   const Motions all = motions_of(instants, {}, {}, stride, options.motions.most, options.motions);

@@ -21,7 +21,8 @@ struct LargeMoveOptions {
   /// A side contradicts the other one's answer where its typical residual there is more than this part of the
   /// typical motion; noise of a tenth of every motion stays below 0.3.
   double contradicts = 0.3;
-  /// Its own answer must leave less than this part of that residual, and contradict nothing by itself.
+  /// The own answer of such a side must leave less than this part of that residual there, and contradict
+  /// nothing by itself.
   double own = 0.4;
   /// Parts of the drive in which unexplained_part() looks for one run: a third of the drive is four of them.
   std::size_t windows = 12;

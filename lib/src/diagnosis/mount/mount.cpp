@@ -89,7 +89,7 @@ MovesResult moves_of(const Strides& strides, const Answered& answered, const Dia
   return find_moves_of_strides(strides, answered.problem, moves);
 }
 
-/// Without the motions of the last seconds.
+/// The motions without those of the last seconds.
 Strides shown_before(Strides strides, const MountCheckOptions& mount) {
   for (std::vector<MotionPair>& pairs : strides) {
     const std::int64_t end = pairs.empty() ? 0 : pairs.back().end_us - to_microseconds(mount.shown_before);
@@ -130,7 +130,7 @@ std::int64_t begin_of(const Strides& strides, const MovesResult& result) {
   return strides[result.stride].front().begin_us;
 }
 
-/// Without the motions in the seconds around moves.
+/// The motions without those in the seconds around moves.
 Strides without_those_around(Strides strides, std::int64_t begin_us, const std::vector<Move>& moves) {
   for (const Move& move : moves) {
     const std::int64_t left_us = begin_us + to_microseconds(move.time - CorrectionOptions{}.seconds),

@@ -36,7 +36,7 @@ std::vector<double> squared_changes(const Instants& instants, const DualQuaterni
   return squares;
 }
 
-/// Without the largest ones.
+/// Mean of the squared changes without the largest ones (SwayOptions::largest_part).
 double mean_square(std::vector<double> squares, const SwayOptions& options) {
   const auto count =
       static_cast<std::size_t>(std::ceil((1 - options.largest_part) * static_cast<double>(squares.size())));

@@ -23,8 +23,8 @@ struct AwakeStreams {
   Trajectory a, b;
 };
 
-/// Without the poses that one stream repeats while the other one moves; the first of them stays. time_offset:
-/// added to the stamps of b [s].
+/// The streams without the poses that one of them repeats while the other one moves; the first of the
+/// repeated poses stays. time_offset: added to the stamps of b [s].
 AwakeStreams without_frozen_poses(const Trajectory& a, const Trajectory& b, double time_offset,
                                   const AwakeStreamsOptions& options = {});
 

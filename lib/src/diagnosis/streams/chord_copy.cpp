@@ -54,8 +54,8 @@ std::vector<RowOnLines> rows_on_lines(const TimedPoses& rows, const TimedPoses& 
 }
 
 /// Whether the lines between neighbours leave far less of the motions than the longer lines do. Only the half
-/// of the motions of which the longer lines leave more counts: of a sensor that stands nothing is
-/// left on either. size: of the motions.
+/// of the motions of which the longer lines leave more counts: of a sensor that stands nothing is left on
+/// either. size: of the motions.
 bool far_less(std::vector<std::pair<double, double>> far_and_near, double size,
               const ChordCopyOptions& options) {
   const std::size_t half = far_and_near.size() / 2;

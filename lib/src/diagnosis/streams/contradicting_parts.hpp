@@ -29,7 +29,7 @@ struct ContradictingPartsOptions {
   /// A part contradicts if its quantile is this many times that of the median part, both in degrees and for
   /// each degree that is turned. Clean drives: 3.2 (116 of an independent simulator).
   double times = 10;
-  /// And at least [rad]: as large as what users call wrong.
+  /// And its quantile is at least this [rad]: as large as what users call wrong.
   double least_rotation = std::numbers::pi / 180;
   /// Motions of this part of the length leave so many times more for each degree, too: a single jump is in
   /// few of them.

@@ -16,7 +16,7 @@ namespace egocal::detail {
 
 namespace {
 
-/// Per motion. Motions at rest contradict nothing.
+/// Whether each motion contradicts the answer. Motions at rest contradict nothing.
 std::vector<bool> contradicting(const Motions& motions, const Pose& T_a_b,
                                 const ContradictingRunsOptions& options) {
   const std::vector<bool> rest = at_rest(motions, T_a_b), one_rests = one_at_rest(motions);

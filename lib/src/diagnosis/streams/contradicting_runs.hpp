@@ -17,7 +17,8 @@ struct ContradictingRunsOptions {
   /// A motion contradicts if the answer leaves this many times the median residual, and this part of its
   /// length, or of its angle.
   double times = 6, of_motion = 0.1;
-  /// And of its rotation at least [rad]: as large as what users call wrong.
+  /// A rotation contradicts only if the answer also leaves at least this of it [rad]: as large as what users
+  /// call wrong.
   double least_rotation = std::numbers::pi / 180;
   /// A run lasts longer than a motion by this many instants: one jump is in as many motions as one spans, and
   /// wrong poses are few in a row (WrongPosesOptions::most_in_a_row).

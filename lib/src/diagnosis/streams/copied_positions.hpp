@@ -18,7 +18,7 @@ struct CopiedPositionsOptions {
   /// the same distance, to all digits of a file. Here a metre between them makes a difference of 5 cm.
   double turning = 0.05;
   double part = 0.9;  ///< of the motions that turn, whose distances agree
-  /// To this part of the typical distance: digits of files. Two odometries agree to 1e-3 at best.
+  /// Distances agree to this part of the typical one: digits of files. Two odometries agree to 1e-3 at best.
   double of_distance = 1e-5;
 };
 

@@ -17,7 +17,7 @@ namespace egocal::detail {
 
 namespace {
 
-/// At a time of the other stream; empty where no two poses are around it.
+/// Rotation of a stream at a time of the other stream; empty where no two poses are around it.
 std::optional<Rotation> rotation_at(const TimedPoses& stream, double time, double max_gap) {
   std::size_t from = 0, to = stream.times.size();  // the first pose after the time is in [from, to]
   while (from < to) {

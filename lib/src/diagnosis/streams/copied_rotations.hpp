@@ -27,8 +27,9 @@ struct CopiedRotationsOptions {
 std::optional<Finding> copied_rotations(const Trajectory& a, const Trajectory& b, const ClockModel& clock,
                                         double max_gap, const CopiedRotationsOptions& options = {});
 
-/// The same of motions that turn by `turning`, whose rows do not: half of their rotations agree to rounding
-/// of doubles, as those of an odometry and of a map that corrects it now and then.
+/// same_stream, uncertain, where the motions turn by `turning` and the rows do not: half of the rotations of
+/// the motions agree to rounding of doubles, as those of an odometry and of a map that corrects it now and
+/// then.
 std::optional<Finding> exactly_copied_rotations(const Fit& fit, const Motions& motions,
                                                 const CopiedRotationsOptions& options = {});
 

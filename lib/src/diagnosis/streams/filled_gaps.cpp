@@ -77,7 +77,7 @@ struct PairOfMotions {
 
   double length() const { return std::max(a.translation.norm(), b.translation.norm()); }
   double angle() const { return std::max(rotation_log(a.rotation).norm(), rotation_log(b.rotation).norm()); }
-  /// What it leaves of the answer.
+  /// Residual of the motions at the answer.
   Residual left(const Pose& T) const {
     const Pose rest = inverse(a * T) * (T * b);
     return {rotation_log(rest.rotation).norm(), rest.translation.norm()};
@@ -89,8 +89,8 @@ PairOfMotions motion_between(const Instants& instants, std::size_t from, std::si
   return {inverse(to_pose(begin.a)) * to_pose(end.a), inverse(to_pose(begin.b)) * to_pose(end.b)};
 }
 
-/// What motions over as many instants leave, of those that move as far and turn as far: of others there may
-/// be less to leave. Empty where there are few.
+/// Usual residual of motions over as many instants that move as far and turn as far: others may have less to
+/// leave. Empty where such motions are few.
 std::optional<Residual> usual_of(const Instants& instants, std::size_t span, const PairOfMotions& motion,
                                  const Pose& T, const FilledGapsOptions& options) {
   std::vector<double> rotation, translation;

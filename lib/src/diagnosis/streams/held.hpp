@@ -47,7 +47,7 @@ struct Held {
   std::vector<HeldRows> repeating;  ///< those that are repeated, in order
 };
 
-/// Empty: neither half repeats so.
+/// The half of a stream that repeats its values so; empty: neither half does.
 std::optional<Held> repeating_half(const Trajectory& stream, const HeldOptions& options = {});
 
 }  // namespace egocal::detail

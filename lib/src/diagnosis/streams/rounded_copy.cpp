@@ -38,7 +38,7 @@ PoseRounding pose_rounding(const DualQuaternion& pose, const Written& written) {
   return rounding;
 }
 
-/// What is left of motions, and of what size they are.
+/// What is left of motions, and the size of the motions.
 struct Left {
   double rotation = 0, translation = 0;  ///< over what rounding leaves; medians
   /// Root mean squares: what rounding leaves, and the motions [rad, m].

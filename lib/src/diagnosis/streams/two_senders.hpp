@@ -24,8 +24,8 @@ struct TwoSendersOptions {
   /// Rows aside go on from the last one on that side: their distance from the middle of their neighbours
   /// changes by less than this part of it. Of errors by chance it changes by all of it.
   double most_change = 0.25;
-  /// Least part of the rows aside that go on so: 0.5 by chance in a narrow place, all of them for a
-  /// second odometry.
+  /// Least part of the rows aside that go on so: 0.5 by chance in a narrow place, all of them for a second
+  /// odometry.
   double least_going_on = 0.8;
   /// Rows aside travel at least this part of what the rows beside them travel: a pose that stands still is no
   /// second odometry, but a value of its own for no pose.

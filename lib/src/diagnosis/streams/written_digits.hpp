@@ -22,7 +22,7 @@ struct Digits {
   int decimals = 0, significant = 0;  ///< 0: of no number that is counted
 
   bool known() const { return decimals > 0 || significant > 0; }
-  /// Between one such number and the next, of about this size; 0 where they are not known.
+  /// Distance from one such number of about this size to the next; 0 where the digits are not known.
   double step(double size) const;
 };
 
@@ -30,7 +30,7 @@ struct Written {
   Digits position, rotation;
 };
 
-/// Unknown where the poses have more digits, or are few.
+/// Digits of positions and rotations; unknown where the poses have more digits, or are few.
 Written written(const Trajectory& trajectory, const WrittenDigitsOptions& options = {});
 
 /// Decimals of the rotation matrices that the quaternions were made from; unknown where they are of no such

@@ -29,7 +29,7 @@ class WrongPoses {
       usual_.push_back(usual_over(steps));
   }
 
-  /// Per instant.
+  /// Whether the poses of each instant are wrong.
   std::vector<bool> found() const {
     std::vector<bool> wrong(poses_.size(), false);
     std::size_t good = 0;
