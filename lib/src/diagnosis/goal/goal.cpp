@@ -30,8 +30,8 @@ double chance_within(double ratio, double interval) {
   return std::erf(interval / (ratio * std::numbers::sqrt2));
 }
 
-/// By which all standard deviations have to fall until all directions are within the goal by that
-/// probability. ratios: finite, above 0.
+/// Factor by which all standard deviations have to fall until all directions are within the goal with the
+/// probability of `tuning`. ratios: standard deviations over the goal, finite, above 0.
 double excess_of(const std::vector<double>& ratios, const GoalSpreadOptions& tuning) {
   const auto enough = [&](double factor) {
     double chance = 1;

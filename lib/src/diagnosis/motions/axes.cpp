@@ -47,7 +47,7 @@ QuaternionVector rotation(const DualQuaternion& pose, bool conjugated) {
   return conjugated ? quaternion_conjugate(pose.real) : pose.real;
 }
 
-/// From one pose to the other.
+/// Rotation from one pose to the other.
 QuaternionVector turn(const DualQuaternion& from, const DualQuaternion& to, bool conjugated) {
   const QuaternionVector q =
       quaternion_product(quaternion_conjugate(rotation(from, conjugated)), rotation(to, conjugated));
@@ -84,7 +84,7 @@ std::vector<Step> steps_of(const Instants& instants, Side wrong, bool conjugated
   return steps;
 }
 
-/// Both streams read alike: a is s, b is w.
+/// Motions of both streams, read alike: a is s, b is w.
 std::vector<Step> steps_of_both(const Instants& instants, bool conjugated, int stride, std::size_t most,
                                 const DiagnosisOptions& options) {
   std::vector<Step> steps;
@@ -98,7 +98,8 @@ std::vector<Step> steps_of_both(const Instants& instants, bool conjugated, int s
   return steps;
 }
 
-/// In units in which both streams travel as far: columns of unlike size would spoil the sums.
+/// Brings the translations of w to a unit in which both streams travel as far: columns of unlike size would
+/// spoil the sums.
 void with_like_lengths(std::vector<Step>& steps) {
   double right = 0, wrong = 0;
   for (const Step& step : steps) {

@@ -24,7 +24,7 @@ std::vector<PoseReading> axes_readings(const Instants& instants, Side wrong, int
 struct TurnedAxesOptions {
   double small = 10 * std::numbers::pi / 180;  ///< [rad]
   double gain_of_small = 1;                    ///< mean log ratio of the squared residuals, at least
-  /// The same for a finding that is uncertain: above the benchmark's 0.54; 1,260 clean simulated drives have
+  /// The gain for a finding that is uncertain: above the benchmark's 0.54; 1,260 clean simulated drives have
   /// at most 0.2.
   double possible_gain_of_small = 0.6;
 };
@@ -36,16 +36,18 @@ struct TurnedAxesOptions {
 struct CommonAxesOptions {
   double gain = 1;            ///< mean log ratio of the squared residuals, at least
   double gain_in_metres = 2;  ///< the same of the translations alone [m^2]
-  /// The same for a finding that is uncertain, and the standard deviations of the comparison.
+  /// The gains for a finding that is uncertain, and the standard deviations of the comparison.
   double possible_gain = 0.2, possible_gain_in_metres = 0.6, possible_sigmas = 2;
-  /// The same where a mount seems to move as given, and does not with them: EuRoC's drone has 0.16 and 0.31.
+  /// The gains where a mount seems to move as given, and does not with inverse rotations: EuRoC's drone has
+  /// 0.16 and 0.31.
   double gain_beside_move = 0.1, gain_beside_move_in_metres = 0.25;
 };
 
 /// Rotations, or positions, that are those of the inverse pose.
 std::vector<PoseReading> inverse_rotation_readings();
 
-/// The same of both streams, read alike: one program wrote both files.
+/// Readings of both streams alike: inverse_rotation_readings(), and positions in other axes. One program
+/// wrote both files.
 std::vector<PoseReading> common_axes_readings(const Instants& instants, int stride, std::size_t most,
                                               const DiagnosisOptions& options);
 

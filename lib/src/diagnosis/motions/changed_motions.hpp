@@ -18,7 +18,7 @@ std::vector<std::size_t> begins_of(const Instants& instants, const Motions& moti
 /// Sets the motion of one stream, in the frame of its begin [m].
 void set_motion(Motion& motion, Side side, const Rotation& rotation, const Eigen::Vector3d& translation);
 
-/// The same where it also turns by another angle.
+/// Sets the motion of one stream where it also turns by another angle.
 void set_turned_motion(Motion& motion, Side side, const Rotation& rotation,
                        const Eigen::Vector3d& translation);
 

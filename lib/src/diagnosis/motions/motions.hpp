@@ -75,7 +75,7 @@ class Instants {
   Instants remembering() const;
   /// The same instants, interpolated through another number of poses (SynchroniserOptions::smooth_poses).
   Instants through(std::size_t smooth_poses) const;
-  /// Those that are not marked; wrong: per instant.
+  /// The instants that are not marked as wrong. wrong: per instant.
   Instants without(const std::vector<bool>& wrong) const;
   /// Has the memory of what at() needs brought near: a long drive does not fit into the processor's caches.
   /// Nothing where there is no such instant.

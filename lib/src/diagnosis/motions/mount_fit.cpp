@@ -48,7 +48,7 @@ double MountFit::gain(const MountNumbers& x, const MountNumbers& y) const {
   return sum / static_cast<double>(motions_.size());
 }
 
-/// In units of the median squares, mean of rotation and translation.
+/// Squared residual in units of the median squares, mean of rotation and translation.
 double MountFit::square(const LinearMotion& motion, const MountNumbers& x) const {
   return 0.5 * ((motion.rotation - motion.of_rotation * x).squaredNorm() / rotation_ +
                 (motion.translation - motion.of_translation * x).squaredNorm() / translation_);

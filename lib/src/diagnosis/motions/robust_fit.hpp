@@ -30,12 +30,13 @@ RobustFit evaluated(const Motions& motions, const DualQuaternion& T);
 /// wrong poses in each stream affects up to two thirds of the motions; what contradicts, contradicts
 /// everywhere.
 double misfit(const Motions& motions, const RobustFit& fit);
-/// The same of the better half: of motions that contradict in one direction alone, a third may fit.
+/// Residual that the better half of the motion keeps below, otherwise as misfit(): of motions that contradict
+/// in one direction alone, a third may fit.
 double median_misfit(const Motions& motions, const RobustFit& fit);
 /// The extrinsic by iteratively reweighted global solves of (18).
 RobustFit robust_fit(const Motions& motions, const RobustFitOptions& options = {});
 
-/// The same with two rounds and without weights: a first look.
+/// The extrinsic as by robust_fit(), with two rounds and without weights: a first look.
 RobustFit quick_fit(const Motions& motions, const RobustFitOptions& options = {});
 
 /// An explanation's motions with the extrinsic that suits them best.

@@ -20,14 +20,15 @@ bool explains(const Finding& finding, const DiagnosisOptions& options);
 void name_wrong_scale(const Evidence& evidence, const PairingOptions& pairing, const Answered& answered,
                       const DiagnosisOptions& options, std::vector<Finding>& findings);
 
-/// In place of one scale for the whole drive, where nothing else is certain, one that changes along it and
-/// fits clearly better: as of wheels that wear, or of a camera whose scale drifts. At the one scale the
-/// answer would be as far off as before.
+/// Names a scale that changes along the drive and fits clearly better, in place of one scale for the whole
+/// drive, where nothing else is certain: as of wheels that wear, or of a camera whose scale drifts. At the
+/// one scale the answer would be as far off as before.
 void replace_by_changing_scale(const Evidence& evidence, const PairingOptions& pairing,
                                const Answered& answered, const DiagnosisOptions& options,
                                std::vector<Finding>& findings);
 
-/// What no part of the drive shows by itself, where nothing else explains the streams.
+/// Names rotations that are askew, which no part of the drive shows by itself, where nothing else explains
+/// the streams.
 void name_askew_rotations(const Evidence& evidence, const Answered& answered, const DiagnosisOptions& options,
                           std::vector<Finding>& findings);
 

@@ -138,7 +138,8 @@ std::string not_known_yet(const Known& known, const DiagnosisOptions& options) {
          together + ": " + known.unknown + ".";
 }
 
-/// Not another reading: what is wrong with the poses themselves. Pairing rejects those that repeat.
+/// Whether a finding is of what is wrong with the poses themselves, not of another reading. Pairing rejects
+/// poses that repeat.
 bool stream_fault(const Finding& finding) {
   return finding.code == "frozen_a" || finding.code == "frozen_b" || finding.code == "flat_a" ||
          finding.code == "flat_b" || finding.code.starts_with("stamps_") ||
@@ -146,7 +147,7 @@ bool stream_fault(const Finding& finding) {
          ((finding.code == "same_stream" || finding.code == "time_unit") && finding.certain);
 }
 
-/// Right streams, which leave the answer less certain than its motions say.
+/// Whether a finding is of right streams that leave the answer less certain than its motions say.
 bool undersampling(const Finding& finding) {
   return finding.code.starts_with("undersampled_");
 }

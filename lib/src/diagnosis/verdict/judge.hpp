@@ -14,7 +14,7 @@ struct Misfit {
   double median = 0;  ///< residual at the answer that half of the motion keeps below
 };
 
-/// With a tolerance of the translation that suits the unit of the lengths.
+/// The options with a tolerance of the translation that suits the unit of the lengths.
 DiagnosisOptions in_unit_of(const Motions& motions, DiagnosisOptions options);
 
 /// Sets verdict and reason from fit, findings and what is known of each direction.

@@ -113,8 +113,8 @@ bool left_by_noise(const Evidence& evidence, const Fit& fit, const DiagnosisOpti
          steps_leave_noise(evidence.instants, given.motions, to_pose(given.fit.T), noise);
 }
 
-/// Beside a possible move: a mounting that moved once looks as if both streams were inverted, and then has an
-/// answer that fits.
+/// Words inverted_both beside a possible move: a mounting that moved once looks as if both streams were
+/// inverted, and then has an answer that fits.
 void word_beside_moves(Finding& finding) {
   if (finding.code != "inverted_both" || finding.certain) return;
   say(finding, "If the poses of both streams are world-to-sensor",
@@ -165,7 +165,7 @@ std::optional<Finding> turning_apart(const Evidence& evidence, const Answered& a
   return {};
 }
 
-/// Where nothing else is found.
+/// Finding of the last checks, where nothing else is found.
 std::optional<Finding> last_of_all(const Instants& instants, int stride, const Answered& answered,
                                    const MovedMount& moved, const DiagnosisOptions& options) {
   std::optional<Finding> last;

@@ -102,8 +102,8 @@ std::vector<ScaleStatistics> parts_of(const MotionsOfAnswer& of, const Answered&
   return parts;
 }
 
-/// By one Newton step over scale and extrinsic from the answer, whose motions and weights these are. Empty
-/// where there are too few motions.
+/// Scale by one Newton step over scale and extrinsic from the answer, with the motions and weights of the
+/// answer. Empty where there are too few motions.
 std::optional<ScaleOfAnswer> scale_of_answer(const Evidence& evidence, const Answered& answered,
                                              const DiagnosisOptions& options,
                                              const SmallScaleOptions& small) {
@@ -134,7 +134,7 @@ std::optional<ScaleOfAnswer> scale_of_answer(const Evidence& evidence, const Ans
   return result;
 }
 
-/// In the directions that are known: others are not stated.
+/// The change in the directions that are known, zero in the others: those are not stated.
 Vector6d where_observable(Vector6d moved, const Answered& answered) {
   for (Eigen::Index i = 0; i < 6; ++i)
     if (!answered.observability.observable[static_cast<std::size_t>(i)]) moved[i] = 0;
