@@ -44,10 +44,11 @@ std::vector<Finding> explain(const Evidence& evidence, const DiagnosisOptions& o
 /// scale.
 std::optional<Finding> wrong_scale(const Evidence& evidence, const DiagnosisOptions& options);
 
-/// The same by motions of all lengths together, where the long ones seem to have a scale: on a machine that
-/// is shaken faster than it is measured their own standard deviation is mostly that of the shaking. Uncertain
-/// where it is small, or differs from one by fewer of its standard deviations: right odometries differ as
-/// much, so that it is of use where the answer at it is another one. pairing: as for the answer.
+/// wrong_scale() by motions of all lengths together, where the long ones seem to have a scale: on a machine
+/// that is shaken faster than it is measured the standard deviation of the long ones is mostly that of the
+/// shaking. Uncertain where it is small, or differs from one by fewer of its standard deviations: right
+/// odometries differ as much, so that it is of use where the answer at it is another one. pairing: as for the
+/// answer.
 std::optional<Finding> wrong_scale_of_drive(const Evidence& evidence, const PairingOptions& pairing,
                                             const DiagnosisOptions& options);
 

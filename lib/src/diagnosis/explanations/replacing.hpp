@@ -25,7 +25,7 @@ class WrongStream {
   const std::vector<Finding>& columns();
   /// Late positions, certain or not; empty if there are too few motions.
   const std::optional<LateOfEither>& late();
-  /// One coordinate that is late.
+  /// Findings of one coordinate that is late.
   const std::vector<Finding>& late_column();
   /// The fault that explains most: contents, columns, late positions or one late coordinate, a lever arm that
   /// was turned wrongly, or turns that are too large.

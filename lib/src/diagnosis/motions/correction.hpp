@@ -12,10 +12,10 @@
 namespace egocal::detail {
 
 struct CorrectionOptions {
-  /// Left out on both sides of a change [s]: as long as SLAM systems spread a correction. Where a side has
-  /// less left, it says too little.
+  /// Time that is left out on both sides of a change [s]: as long as SLAM systems spread a correction. Where
+  /// a side has less left, it says too little.
   double seconds = 5;
-  /// Without these the motions must show the change with a chance below this: at one place, as
+  /// Without these seconds the motions must show the change with a chance below this: at one place, as
   /// MovesOptions::confirmation.
   double chance = 1e-2;
   /// No mounting explains a stretch whose typical squared residual at its own answer is this many times that

@@ -25,15 +25,15 @@ bool standing_still(const Instants& instants, const StandingStillOptions& option
 struct RestOptions {
   double length = 0.1;  ///< at most, as a part of the usual one
   double angle = 0.5;   ///< the same: a train turns by little more than its noise
-  /// And at most this many times the median residual of motions that are so short: what is slow and exact is
-  /// no rest.
+  /// A motion at rest is also at most this many times the median residual of motions that are so short: what
+  /// is slow and exact is no rest.
   double of_noise = 3;
   /// The motions at rest are omitted where they are at least this part: of less no median is one of noise.
   double least_part = 0.2;
 };
 
-/// Half of the turning is in motions that turn by more [rad]; of both sensors the smaller angle, as wrong
-/// poses are large.
+/// The usual angle of motions [rad]: half of the turning is in motions that turn by more. The smaller angle
+/// of both sensors counts, as wrong poses are large.
 double usual_angle(const Motions& motions);
 
 /// Which motions are those of sensors that stand, by their residuals at an extrinsic: noise, compared with

@@ -18,8 +18,8 @@ struct BurstOptions {
   /// Poses on both sides that show how long a step usually takes here: keyframes of a vehicle that slows down
   /// come less often, in no bursts.
   std::size_t reach_of_time = 24;
-  /// Steps that take less than this part of that are within a burst: at least this part of all. Two poses at
-  /// once make half.
+  /// Steps that take less than this part of the usual time are within a burst; at least this part of all
+  /// steps are. Two poses at once make half.
   double within = 0.25, part = 0.4;
   /// Steps of a burst, at most. Less than reach_of_time: beside a pause of the recording as many steps as
   /// that are shorter than the mean.

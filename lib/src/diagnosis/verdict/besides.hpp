@@ -10,8 +10,8 @@
 
 namespace egocal::detail {
 
-/// There is nothing further to look for. Twin readings that both fit far better are uncertain each, but one
-/// of them is right.
+/// Whether there is nothing further to look for. Twin readings that both fit far better are uncertain each,
+/// but one of them is right.
 bool explains(const Finding& finding, const DiagnosisOptions& options);
 
 /// A wrong scale that few motions show, where nothing else is certain. One that is no larger than right

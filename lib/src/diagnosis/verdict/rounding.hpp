@@ -19,8 +19,9 @@ struct RoundingOptions {
   /// Rounding of less than this part of the usual motion moves no answer by what it states: of 4 decimals of
   /// a quaternion (0.003 deg) in motions of 3 degrees, of a millimetre in a metre.
   double least = 1e-3;
-  /// Times the step are those that the poses are rounded to once more: odd, as multiples of a step are then
-  /// never in the middle of two of these. 3: the least that is, so the nearest to the rounding that was.
+  /// Size of the steps that the poses are rounded to once more, over the step that they were written with:
+  /// odd, as multiples of a step are then never in the middle between two coarser ones. 3 is the least such
+  /// number, so the nearest to the rounding that was.
   int coarser = 3;
 };
 

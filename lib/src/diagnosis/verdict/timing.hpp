@@ -7,8 +7,8 @@
 
 namespace egocal::detail {
 
-/// What clocks that differ and interpolation change. Of streams that are understood otherwise: a wrong answer
-/// has no standard deviation that could be right.
+/// States what clocks that differ and interpolation change of the answer. Only where the streams are
+/// understood otherwise: a wrong answer has no standard deviation that could be right.
 void look_at_times(const Foreseen& foreseen, Answered& answered, Diagnosis& result);
 
 }  // namespace egocal::detail

@@ -19,7 +19,7 @@ struct TravelInNoiseOptions {
   /// And the answer leaves at most this many times what such a stream travels: what the other one travels is
   /// explained.
   double most_left = 1.3;
-  /// Rotations leave at most this part of the typical one.
+  /// The residual rotation is at most this part of the typical rotation, in the median.
   double most_of_rotation = 0.2;
 };
 

@@ -16,11 +16,12 @@ struct Heading {
 
 Heading heading(const Motions& motions);
 
-/// A vehicle: both sensors always travel the same way of their bodies.
+/// Whether this is a vehicle: both sensors always travel the same way of their bodies.
 bool forward(const Heading& heading, const HeadingOptions& options);
-/// A vehicle that reverses as well: both always travel along the same line of their bodies.
+/// Whether this is a vehicle that reverses as well: both sensors always travel along the same line of their
+/// bodies.
 bool along_one_line(const Heading& heading, const HeadingOptions& options);
-/// Neither does.
+/// Whether neither sensor mostly travels the same way of its body.
 bool scattered(const Heading& heading, const HeadingOptions& options);
 
 /// Whether both bodies go a longer way under the reading x of their poses than under y, by their sensors and

@@ -14,12 +14,13 @@ struct UnlikeColumnsOptions {
   /// Largest factor over the smallest, as a logarithm, at least: twice what the scales of ordinary odometries
   /// differ by (ScaleCheckOptions).
   double least = 0.03;
-  /// It is the columns that are called stretched from this on, and else the odometry: one that drifts by 5 %
-  /// along each axis has factors that differ by up to 0.12.
+  /// The columns are called stretched from this logarithm on, and the odometry below it: an odometry that
+  /// drifts by 5 % along each axis has factors that differ by up to 0.12.
   double of_columns = 0.15;
-  /// It is certain from this on, a factor of 1.5: feet have 1.19, degrees of latitude and longitude 0.4 where
-  /// people live. Below, an honest odometry may drift that way: a lidar measures heights of hills 25 % wrong
-  /// and the answer is off by less than the tolerance. Then the change of the answer decides.
+  /// The finding is certain from this logarithm on, a factor of 1.5: feet have 1.19, degrees of latitude and
+  /// longitude 0.4 where people live. Below, an honest odometry may drift that way: a lidar measures heights
+  /// of hills 25 % wrong and the answer is off by less than the tolerance. Then the change of the answer
+  /// decides.
   double certain = 0.4;
   int rounds = 3;  ///< of factors and extrinsic in turn
   /// A column counts where its part of the way is at least this, under the factors: of what hardly moves the

@@ -22,10 +22,10 @@ struct EarlyRotationsOptions {
   /// rotations of both streams. Where it is the positions that have another time, LatePositions tells it
   /// better.
   double sigmas = 3.5;
-  /// The positions have the time of the other stream, but for this part of that of the rotations, which is
-  /// the clock's. Where the speed is constant the time of the positions is that of another lever arm, and
-  /// noise on poses or a clock that differs leaves up to 11 standard deviations: of the time of the
-  /// positions.
+  /// The positions have the time of the other stream, but for less than this part of the time of the
+  /// rotations. That part is the clock's. Where the speed is constant the time of the positions is that of
+  /// another lever arm, and noise on poses or a clock that differs leaves up to 11 standard deviations: of
+  /// the time of the positions.
   double most_of_positions = 0.5;
   /// And two times make squared residuals smaller by this mean logarithm than one does. Steered and towed
   /// parts: 0.075 to 0.96; right streams whose positions have the time of the other one: 0.003.

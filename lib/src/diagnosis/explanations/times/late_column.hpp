@@ -22,8 +22,8 @@ struct LateColumnOptions {
   /// A coordinate is looked at closer where its delay explains this part of the residual translations, as
   /// root mean squares.
   double first_look = 0.15;
-  /// Where the blocks of the drive do not show it, the delay is so many of its standard deviations, by
-  /// omitting so many parts of the drive in turn.
+  /// Where the blocks of the drive do not show the delay, it is more than so many of its standard deviations,
+  /// by omitting so many parts of the drive in turn.
   double sigmas = 5;
   std::size_t parts = 24;
   double least_gain = 0.05;  ///< mean logarithm of the squared residuals then, at least

@@ -23,10 +23,10 @@ struct TurningScaleOptions {
 
 /// The stream that turns too far, or not far enough, about one axis of its world, the extrinsic without that,
 /// and by how much the motions then fit better, where they clearly do. Both streams, the better one first,
-/// where either may be the one. Its positions are right, or were made
-/// from its rotations: both are tried. Or the stream whose rotation vectors are twice or half as long as they
-/// should be, or of degrees taken as radians the other way round. instants, given: the drive, and its motions
-/// with the extrinsic that suits them as they are.
+/// where either may be the one. The positions of such a stream are right, or were made from its rotations:
+/// both are tried. Or the stream whose rotation vectors are twice or half as long as they should be, or of
+/// degrees taken as radians the other way round. instants, given: the drive, and its motions with the
+/// extrinsic that suits them as they are.
 std::vector<Finding> turning_scale(const Instants& instants, const Explained& given,
                                    const DiagnosisOptions& options, const TurningScaleOptions& turning = {});
 
