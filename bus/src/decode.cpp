@@ -62,7 +62,7 @@ class Walk {
 constexpr std::size_t statistics_size = 8 + 8 + 36 * 8;                             // bytes, format
 constexpr std::size_t scale_statistics_size = 8 + 8 + (10 + 16 + 16 + 10 + 2) * 8;  // bytes, format
 constexpr std::size_t fit_size = 8 + 8 * 8;                                         // bytes, format
-/// Of a finding: what lies between its strings and behind them.
+/// Bytes of a finding behind its strings, format. One more byte is between the strings.
 constexpr std::size_t finding_numbers = 8 + 8 + 1 + 8 + 1 + 24 + 32;
 constexpr std::size_t least_string = 4 + 1;  // bytes, format: length and final zero
 

@@ -24,7 +24,7 @@ std::int64_t gain_us(const Stamp& from, const Stamp& to) {
   return (to.time_us - from.time_us) - (to.mono_us - from.mono_us);
 }
 
-/// Of two with one time.
+/// Whether two stamps with the same time are of the same message.
 bool same_message(const Stamp& one, const Stamp& other) {
   return one.seq >= 0 ? one.seq == other.seq : one.position == other.position;
 }

@@ -28,8 +28,8 @@ CLI::Validator a_value();
 
 CLI::Validator any_number();
 
-/// Of a flag: `--json=3x` is not the flag. CLI11 hands on "true" where nothing is given, and --json=false is
-/// as good as no flag.
+/// Refuses the value of a flag: `--json=3x` is not the flag. CLI11 hands on "true" where nothing is given,
+/// and --json=false is as good as no flag.
 CLI::Validator no_value();
 
 /// Accepts decimal digits only: CLI11 takes 010 for eight, and -1 for the largest unsigned number.

@@ -22,16 +22,16 @@ inline constexpr double centimetres_per_metre = 100.0;  // unit
 
 /// What is kept of a text from a sender: its first Model::max_text bytes.
 std::string bounded(const std::string& text);
-/// From SI to what is shown, by direction (x y z roll pitch yaw).
+/// Factor from SI units to those shown, by direction (x y z roll pitch yaw).
 double scale_of(int direction);
-/// In planar mode the ground planes give what the motions cannot show.
+/// Whether the ground planes give this direction: in planar mode, what the motions cannot show.
 bool from_ground(const PairState& pair, int direction);
 bool shown_by_motion(const Shown& shown, int direction);
 /// x y z [m], roll pitch yaw [rad].
 std::array<double, 6> components(const Pose& T);
-/// Of three standard deviations, for instance.
+/// The largest of three values, of standard deviations for instance.
 double largest(const double* values);
-/// Of x y z [m] (from 0), or of roll pitch yaw [rad] (from 3).
+/// The largest standard deviation of x y z [m] (from 0), or of roll pitch yaw [rad] (from 3).
 double largest_stddev(const Shown& shown, std::size_t from);
 
 /// "+-0.94", or "plane" where the ground plane gives it.

@@ -11,7 +11,7 @@ namespace egocal::monitor {
 /// What is shown before any key is pressed.
 ViewState first_view(const ProgramOptions& options, const Source& source);
 
-/// Of the local time now [s].
+/// The offset of the local time from UTC, now [s].
 int utc_offset_s();
 
 }  // namespace egocal::monitor

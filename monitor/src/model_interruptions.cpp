@@ -70,7 +70,7 @@ void Model::watch_interruptions(Now now) {
   }
 }
 
-/// Of the measured times of two problems of a session.
+/// Judges the step between the measured times of two problems of a session: a gap, a jump back, or neither.
 void Model::watch_time(PairState& pair, const problem_t& message, Now now) {
   const std::string name = pair_name(pair.a, pair.b);
   const double step = seconds_between(pair.problem.utime, message.utime);

@@ -95,7 +95,7 @@ std::string three_components(const PairState& pair, int from, Charset charset) {
                 charset);
 }
 
-/// Of a column that needs an answer.
+/// The cell of a column that needs an answer.
 Cell cell_of_answer(const PairState& pair, const calibration_t& answer, PairColumn column, Now now,
                     Charset charset) {
   const Symbols& s = symbols(charset);

@@ -78,7 +78,7 @@ double axis_value(const Plot& plot, double value) {
   return plot.logarithmic ? std::log10(value) : value;
 }
 
-/// Of all curves within the time that is shown.
+/// The range of the values of all curves within the time that is shown.
 Range range_of(const Plot& plot) {
   Range range;
   for (const PlotSeries& series : plot.series) {

@@ -26,7 +26,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// That this thread has had [us].
+/// Processor time of this thread since its start [us].
 std::int64_t processor_us() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);

@@ -313,7 +313,7 @@ void fields(auto& archive, services::Is<ScaleDriveState> auto& value) {
 
 namespace services {
 
-/// Of the fields in this file.
+/// Number of the layout of the fields in this file.
 constexpr int state_layout = 24;
 
 }  // namespace services

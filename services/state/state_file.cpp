@@ -15,7 +15,7 @@ namespace egocal::services {
 
 namespace {
 
-/// Of a state of any version.
+/// How a state of this process begins, whatever its version.
 std::string beginning(const std::string& process) {
   return process + " state ";
 }

@@ -14,7 +14,7 @@ struct StateIdentity {
   std::string text;     ///< everything else, one line each; a state with other lines is refused
 };
 
-/// Of a process with this layout of its fields, for this rig.
+/// The identity of a state of this process, with this layout of its fields, for this rig.
 StateIdentity state_identity(const std::string& process, int layout, const bus::Rig& rig);
 
 }  // namespace egocal::services

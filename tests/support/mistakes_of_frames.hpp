@@ -70,7 +70,7 @@ inline Trajectory with_inverse_positions(const Trajectory& trajectory) {
   return changed(trajectory, [](const Pose& pose) { return Pose{pose.rotation, inverse(pose).translation}; });
 }
 
-/// Of a left-handed world and body: y is on the other side.
+/// The trajectory in a left-handed world and body: y is on the other side.
 inline Trajectory mirrored(const Trajectory& trajectory) {
   return changed(trajectory, [](const Pose& pose) {
     const Eigen::Quaterniond& q = pose.rotation;

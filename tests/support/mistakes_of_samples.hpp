@@ -22,7 +22,7 @@ struct SampleMistake {
   std::function<void(Samples&)> make;
 };
 
-/// Of each pose of one list.
+/// A mistake in each pose of one list.
 inline std::function<void(Samples&)> of_each(DualQuaternion PoseSample::*list,
                                              const std::function<Pose(const Pose&)>& change) {
   return [list, change](Samples& samples) {
@@ -31,7 +31,7 @@ inline std::function<void(Samples&)> of_each(DualQuaternion PoseSample::*list,
   };
 }
 
-/// Of a left-handed world and body: y is on the other side.
+/// The pose in a left-handed world and body: y is on the other side.
 inline Pose left_handed(const Pose& pose) {
   const Eigen::Quaterniond& q = pose.rotation;
   const Eigen::Vector3d& t = pose.translation;

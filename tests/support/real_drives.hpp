@@ -34,7 +34,7 @@ inline PairingOptions kitti_planar(PairingOptions options) {
   return options;
 }
 
-/// Of the robot arm: not a truth, the estimate that came with the data.
+/// Pose of the robot arm's eye in its hand: not a truth, but the estimate that came with the data.
 inline const DualQuaternion arm_reference = to_dual_quaternion(
     {Eigen::Quaterniond(0.600112895337, -0.605573525678, 0.371519644521, -0.367584509445).normalized(),
      {-0.00245036495877, -0.0184887305911, 0.00211597057302}});

@@ -19,8 +19,9 @@ constexpr std::size_t most_pairs = bus::AnswerCheck::max_pairs;  // a limit on m
 /// Problems in a row that are older than the newest one before they are believed: one may be late.
 constexpr int confirmations = 3;
 
-/// Of each pair the session of the last problem in a log; where it holds no problems, of the last answer. A
-/// higher session is not always a later one: two pairing processes may have sent for a moment.
+/// The last session of each pair in a log: that of the pair's last problem, or of its last answer where the
+/// log holds no problems of it. A higher session is not always a later one: two pairing processes may have
+/// sent for a moment.
 class LastSessions {
  public:
   void hear(const problem_t& message) { set(problems_, message); }
@@ -280,7 +281,7 @@ void Answers::note(const problem_t& message) {
   note_passed(message, newest);
 }
 
-/// The last one is always the newest.
+/// The last entry of `passed` is always the newest problem.
 void Answers::note_passed(const problem_t& message, Newest& newest) {
   constexpr std::size_t most_passed = 20'000;  // a limit on memory
   std::vector<Passed>& passed = newest.passed;
@@ -305,7 +306,7 @@ const std::vector<Answers::Passed>& Answers::passed(const PairName& pair) const 
   return newest == newest_.end() ? none : newest->second.passed;
 }
 
-/// Of a problem that is no longer the newest although it has the higher number.
+/// Whether an answer is to a problem that is no longer the newest although it has the higher number.
 bool Answers::is_ahead(const PairName& pair, const calibration_t& message) const {
   const auto newest = newest_.find(pair);
   return newest != newest_.end() &&

@@ -24,7 +24,7 @@ inline constexpr int not_to_be_used = 3;
 
 using PairName = std::pair<std::string, std::string>;  ///< sensors a and b
 
-/// Of the answers to each pair's problems the one that counts, verified against the problem itself: a
+/// For each pair, the answer to its problems that counts. It is verified against the problem itself: a
 /// sender's verdict is not taken for a proof.
 class Answers {
  public:
@@ -53,15 +53,17 @@ class Answers {
   /// What the answer that counts knows of each direction, by the newest verdict about its session where there
   /// is one. There must be an answer.
   Observability observability(const PairName& pair) const;
-  /// How far the answer that counts is from the one that this verdict calls good; empty: it holds for it.
+  /// How far the answer that counts is from the one that diagnosis() calls good; empty: the verdict holds for
+  /// the answer, or there is no verdict.
   std::optional<bus::Departure> departure(const PairName& pair) const;
-  /// That verdict is about the newest problem that was heard, by poses up to its end.
+  /// Whether diagnosis() is about the newest problem that was heard, by poses up to its end; where none was
+  /// heard, whether there is a verdict.
   bool judged_to_the_end(const PairName& pair) const;
-  /// How much of the drive came after what that verdict is about [s]; nothing: there is no verdict.
+  /// How much of the drive came after what diagnosis() is about [s]; nothing: there is no verdict.
   std::optional<double> seconds_not_judged(const PairName& pair) const;
-  /// The answer that counts is one to the newest problem that was heard; also where none was heard.
+  /// Whether the answer that counts is one to the newest problem that was heard; true where none was heard.
   bool answered_to_the_end(const PairName& pair) const;
-  /// How much of the drive came after what that answer knows [s]; 0 where it knows all of it.
+  /// How much of the drive came after what the answer that counts knows [s]; 0 where it knows all of it.
   double seconds_not_answered(const PairName& pair) const;
   /// End of the newest motion that was heard of [us, time of a], and what is added to the time of b [s];
   /// nothing: none was.
@@ -73,15 +75,15 @@ class Answers {
     std::int64_t stride = 1;
     double time_offset = 0;  ///< what is added to the time of b [s]
   };
-  /// Of the session of the newest problem, from its begin on, thinned to some thousands; empty: there is
-  /// none.
+  /// The course of the newest problem's session, from its begin on, thinned to some thousands of entries;
+  /// empty: there is no such problem.
   const std::vector<Passed>& passed(const PairName& pair) const;
   /// The scale that was found together with the answer that counts; null: none was looked for, or received.
   const bus::CheckedScale* scale(const PairName& pair) const;
-  /// The scale of one of the pair's sensors is to be found, and none that was verified is known of the
+  /// Whether the scale of one of the pair's sensors is to be found, and no verified scale is known of the
   /// session of the answer that counts.
   bool lacks_scale(const PairName& pair) const;
-  /// There is an answer, it is verified and optimal, and the scale that it holds at is known.
+  /// Whether there is an answer that is verified and optimal, and the scale that it holds at is known.
   bool certified(const PairName& pair) const;
   const std::map<PairName, Best>& all() const { return best_; }
   /// Answers that were refused, by reason.

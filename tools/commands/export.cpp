@@ -129,7 +129,7 @@ void judge(const PairName& pair, const Answers& answers, NamedExtrinsic& extrins
   extrinsic.reason = diagnosis->reason;
 }
 
-/// Of a pair that has an answer; warns of what is missing for it to be certified.
+/// The extrinsic of a pair that has an answer. Warns of what is missing for it to be certified.
 NamedExtrinsic named(const PairName& pair, const Found& found, bool live) {
   const Answers& answers = found.answers;
   const Answers::Best& best = *answers.best(pair);

@@ -11,7 +11,7 @@ namespace egocal::tools {
 struct ReadingOptions {
   ReadOptions both, a, b;
 
-  /// Of one file: what was typed for it alone, else for both.
+  /// The options of file A or B: what was typed for it alone, else for both.
   ReadOptions of_a() const;
   ReadOptions of_b() const;
 };

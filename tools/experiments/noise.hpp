@@ -33,14 +33,15 @@ struct NoiseOptions {
 struct NoisePoint {
   double level = 0;
   int pairs = 0;
-  /// Of the errors (32) over all runs [m, rad].
+  /// Statistics of the errors (32) over all runs [m, rad].
   struct Errors {
     double median = 0, lower_quartile = 0, upper_quartile = 0, worst = 0;
   };
   Errors translation, rotation;
-  /// Of the error without what all runs of the same sensor pose share: without the bias (deviation.hpp).
+  /// The same statistics of the error without what all runs of the same sensor pose share: without the bias
+  /// (deviation.hpp).
   Errors translation_spread, rotation_spread;
-  /// The same, run by run: sensors, and repeats of each.
+  /// Errors and deviations run by run: for each sensor pose its repeats, one sensor pose after another.
   std::vector<double> translations, rotations, translation_deviations, rotation_deviations;
   /// Errors of the translation where the noise is taken off the cost (egocal/estimation/attenuation.hpp).
   std::vector<double> corrected_translations;

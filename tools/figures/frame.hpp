@@ -14,7 +14,7 @@ inline constexpr double font_size = 8;  // [pt], the size of the paper's caption
 inline constexpr double margin_left = 44, margin_right = 8, margin_top = 20,
                         margin_bottom = 32;  // margins [pt]
 
-/// Of scaled numbers (on_axis()).
+/// The range of an axis, of scaled numbers (on_axis()).
 struct AxisRange {
   double least = std::numeric_limits<double>::infinity();
   double most = -std::numeric_limits<double>::infinity();
@@ -30,7 +30,7 @@ bool drawable(const Axis& axis, double value);
 /// The number, or its logarithm.
 double on_axis(const Axis& axis, double value);
 
-/// From data to points of the picture.
+/// The map from data to points of the picture.
 class Frame {
  public:
   /// plot: must exist as long as this object.

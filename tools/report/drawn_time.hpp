@@ -20,7 +20,8 @@ struct DrawnTimeOptions {
 /// appended (an hour each) or in a recording.
 class DrawnTime {
  public:
-  /// Of a stream without poses time is counted from origin_us, without a break.
+  /// a: the stream from whose first pose time is counted. Where it has no poses, time is counted from
+  /// origin_us, without a break.
   explicit DrawnTime(const Trajectory& a, std::int64_t origin_us = 0, const DrawnTimeOptions& options = {});
 
   /// [s]. A time within a break is where the break is.

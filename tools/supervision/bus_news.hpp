@@ -82,7 +82,7 @@ class BusNews {
     bool operator==(const Complaint&) const = default;
     std::string line() const { return process + ": " + text; }
   };
-  /// Of the processes of a role.
+  /// What the processes of a role complain about, and what was reported of it last.
   struct Error {
     Complaint now, reported;
     std::int64_t since_us = 0;

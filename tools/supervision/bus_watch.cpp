@@ -64,10 +64,10 @@ Pipe make_pipe(int flags) {
   return {Descriptor(ends[0]), Descriptor(ends[1])};
 }
 
-/// In place of the outcome: why there is none.
+/// Begins the text that the listening process sends where there is no outcome: the reason follows.
 constexpr char failed = '!';
 
-/// Of our processes and of others on this host: a limit on memory.
+/// Most processes whose statuses are remembered, ours and others on this host: a limit on memory.
 constexpr std::size_t most_processes = 32;
 
 /// Questions, ten a second, after which a listening process that has not counted since was stopped: it counts
@@ -83,7 +83,7 @@ std::int64_t mono_ms() {
 /// again each second.
 constexpr std::int64_t least_heard_ms = 1500;
 
-/// One that was stopped as well.
+/// Ends a process, also one that was stopped.
 void terminate(pid_t pid) {
   kill(pid, SIGTERM);
   kill(pid, SIGCONT);

@@ -31,7 +31,8 @@ struct BusWatchOptions {
 /// that the supervisor has no threads. Ends with us.
 class BusWatch {
  public:
-  /// Of a bus on which this log is played; empty: none is. The rig must exist as long as this.
+  /// Listens to the bus at this URL. log: the log that is played on it; empty: none is. The rig must exist as
+  /// long as this object.
   BusWatch(const bus::Rig& rig, const std::string& url, const std::string& log,
            const BusWatchOptions& options = {});
   ~BusWatch();
@@ -40,7 +41,8 @@ class BusWatch {
 
   /// How long ago the status of a process on this host was received; nothing: never.
   std::optional<std::chrono::milliseconds> silence(pid_t pid) const;
-  /// For how long it may be silent since then because it computes, see bus::announced_silence().
+  /// For how long the process may be silent after that status because it computes, see
+  /// bus::announced_silence().
   std::chrono::milliseconds announced_silence(pid_t pid) const;
   /// Asked at a log's end for the first time. Pairs whose newest answer or verdict is not about their last
   /// motions: those of a drive's end still come. The last ones are known once pairing has sent the same

@@ -113,8 +113,9 @@ double poses_per_motion(const bus::Rig& rig, const bus::PairConfig& config, doub
   return std::ceil(options.motion / static_cast<double>(options.starts) / std::max(period, 1e-6));
 }
 
-/// Of one that is told by the log's poses: no motion was made of them, and none was rejected. A motion that
-/// was rejected costs those of the stride around it, too. Where the log itself has a gap, nothing is missing.
+/// The hole in the middle of a pair's answer, as the log's poses show it: no motion was made of them, and
+/// none was rejected. A motion that was rejected also costs the poses of the stride around it. Where the log
+/// itself has a gap, nothing is missing.
 Hole hole_in(const bus::Rig& rig, const bus::PairConfig& config, const LogExtent& extent,
              const Answers& answers, const OutcomeOptions& options) {
   const PairName pair{config.a, config.b};
@@ -177,7 +178,7 @@ std::string missing_end(const PairName& pair, const Answers& answers, double unr
       answers.answered_to_the_end(pair) ? "pairing did not read them" : "no solver answered them");
 }
 
-/// Of a pair that has an answer.
+/// The lines of text about a pair that has an answer.
 std::string line_of(const PairName& pair, const Answers& answers, const std::string& missing,
                     const Begin& begin, const Hole& hole, double without_motion) {
   const Answers::Best& best = *answers.best(pair);

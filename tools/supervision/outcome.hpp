@@ -19,8 +19,8 @@ struct Outcome {
   /// The answer of some pair should not be used: its motions contradict each other, it misses the goal, it
   /// lacks the end of the log, or it has moved since the last verdict.
   bool unusable = false;
-  /// Of each pair verdict, proof and transform, or that there is no answer. Of a bus that was watched and on
-  /// which nothing was answered: why, in one line, or empty.
+  /// The verdict, proof and transform of each pair, or that it has no answer. Where a bus was watched and
+  /// nothing was answered on it: why, in one line, or empty.
   std::string text;
 };
 

@@ -20,7 +20,8 @@ class PassingState {
   PassingState& operator=(const PassingState&) = delete;
 
   const std::string& file() const { return file_; }
-  /// Of the diagnosis process, beside the one of pairing whatever that is called: one goes with the other.
+  /// The state file of the diagnosis process that belongs to a state file of pairing. It is beside that file,
+  /// whatever that is called: one goes with the other.
   static std::string of_diagnosis(const std::string& file) { return file + ".diagnosis"; }
   void discard();
 

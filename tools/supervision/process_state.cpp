@@ -31,7 +31,7 @@ void wait_until_stopped(pid_t pid) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
 }
 
-/// That it has had since it was started; 0: it has ended.
+/// Processor time of a process since its start; 0 where it has ended.
 std::chrono::nanoseconds processor_time(pid_t pid) {
   clockid_t clock{};
   timespec time{};

@@ -23,9 +23,10 @@ Activity activity(pid_t pid);
 /// Adds what this process does; -1: none runs.
 void add_work_of(pid_t pid, Work& work);
 
-/// Of the time that has passed since the last call for a process: of one that computes only what it has had
-/// of a core. One that gets a thirtieth of it is slow, and does not hang. processor: that it had had at the
-/// last call, and has had now.
+/// The time since the last call for a process, without its waits for a core: of a process that computes, only
+/// the processor time that it has had since then. A process that gets a thirtieth of a core is slow, and does
+/// not hang. passed: since the last call. processor: the processor time of the process at the last call, set
+/// to that of now.
 std::chrono::milliseconds without_waiting_for_a_core(pid_t pid, std::chrono::milliseconds passed,
                                                      std::chrono::nanoseconds& processor);
 

@@ -28,7 +28,7 @@ struct RestartOptions {
 /// Exit codes after which no restart helps, unless the program has once started well.
 inline constexpr int wrong_usage = 2, exec_failed = 127;
 
-/// Of one process.
+/// Decides about the restarts of one process.
 class Restarts {
  public:
   enum class Next {

@@ -15,14 +15,14 @@ struct SilenceOptions {
   std::chrono::milliseconds heard{2500};
 };
 
-/// Of one process.
+/// Decides what to do about the silence of one process.
 class Silence {
  public:
   enum class Next { nothing, report_heard, report_and_continue, kill };
 
-  /// since: how long ago it was heard. passed: since the question before. Silence is counted only while
-  /// another process is heard: without a network, and after a machine has slept or all of them were stopped,
-  /// all of them are silent.
+  /// since: how long ago the process was heard. passed: time since the last call. Silence is counted only
+  /// while another process is heard: without a network, and after a machine has slept or all processes were
+  /// stopped, all of them are silent.
   Next look(std::chrono::milliseconds since, std::chrono::milliseconds passed, bool another_is_heard,
             const SilenceOptions& options);
 

@@ -8,7 +8,7 @@
 
 namespace egocal::tools {
 
-/// Of one number at least: the larger of the two in the middle where their number is even.
+/// The median of at least one number; the larger of the two in the middle where their count is even.
 template <typename Number>
 Number median_of(std::vector<Number> numbers) {
   const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);

@@ -53,7 +53,8 @@ Move difference(const Calibration& first, const Calibration& second, bool metres
   return move;
 }
 
-/// By more than odometry errs otherwise on another road (MovesOptions::least_rotation).
+/// Whether two drives differ by more than odometry errs otherwise on another road
+/// (MovesOptions::least_rotation).
 bool shows(const Move& move, const MountsOfDrivesOptions& mounts) {
   const MovesOptions options;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -97,7 +98,7 @@ std::vector<MountsDiffer> compared(const Drives& drives, const std::vector<std::
   return found;
 }
 
-/// Of the drives that are not usable beside others that are.
+/// The faults of drives that are not usable, where others are.
 struct Faults {
   std::vector<Finding> findings;
   bool all_named = true;  ///< each such drive has one
@@ -119,7 +120,7 @@ Faults faults_of(const Drives& drives, const std::vector<std::optional<Calibrati
   return faults;
 }
 
-/// By a drive that has no fault of its own.
+/// Whether a drive that has no fault of its own shows a finding of this code.
 bool is_shown_by(const std::vector<std::optional<Calibration>>& alone, const Finding& wanted) {
   return std::any_of(alone.begin(), alone.end(), [&](const std::optional<Calibration>& one) {
     return is_usable(one) && std::any_of(one->findings.begin(), one->findings.end(),

@@ -23,7 +23,7 @@ Inverted inverted_by(const CalibrationOptions& options) {
   return {options.read_a.invert, options.read_b.invert};
 }
 
-/// Of a finding that the poses of this stream are inverted.
+/// The cure of the finding that the poses of this stream are inverted.
 std::string cure_of_inverted(char which, const Inverted& given) {
   const char rest = which == 'a' ? 'b' : 'a';
   if (which == 'a' ? given.a : given.b) return fmt::format("leave out --invert-{}", which);

@@ -14,7 +14,7 @@ namespace egocal::tools {
 nlohmann::ordered_json rig_json(const RigReport& report);
 std::string rig_text(const RigReport& report);
 
-/// Of a rig whose answer should not be used: why, one sentence.
+/// Why the answer of a rig should not be used, one sentence; only for an answer that should not.
 std::string contradiction(const RigReport& report);
 
 /// Remarks on the tree (tree_of()) for standard error, one line each.

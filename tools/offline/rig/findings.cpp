@@ -132,7 +132,7 @@ std::optional<std::size_t> common_sensor(const RigReport& report, const PairFind
   return common.front();
 }
 
-/// sensor: of those that may be of it; empty: of all.
+/// The finding with the largest improvement among those that may be of this sensor; sensor empty: among all.
 const PairFinding& best_of(const RigReport& report, const PairFindings& of_code,
                            std::optional<std::size_t> sensor) {
   const PairFinding* best = nullptr;
@@ -143,7 +143,7 @@ const PairFinding& best_of(const RigReport& report, const PairFindings& of_code,
   return *best;
 }
 
-/// Of one code, in the words of the rig.
+/// The rig's finding from the findings of one code that its pairs have, in the words of the rig.
 RigFinding of_pairs(const RigReport& report, const std::string& code, const PairFindings& of_code,
                     const RigRequest& request, const RigSettings& settings) {
   RigFinding finding;

@@ -24,7 +24,7 @@ constexpr double most_spread = 1.5;
 /// (RigOptions::least_rotation).
 constexpr double agreeing_sigmas = 3;
 
-/// From the first to the last time that all of them were seen [s]; below 0: never.
+/// The time from the begin to the end of what all these sensors recorded [s]; below 0: they share none.
 double common_span(const std::vector<Trajectory>& trajectories, const std::vector<std::size_t>& sensors) {
   std::int64_t begin = trajectories[sensors.front()].front().time_us,
                end = trajectories[sensors.front()].back().time_us;
@@ -35,8 +35,8 @@ double common_span(const std::vector<Trajectory>& trajectories, const std::vecto
   return to_seconds(end - begin);
 }
 
-/// Of the pair whose motions are the longest: what is common keeps the errors of the pairs dependent, and the
-/// loops closed.
+/// The choice of the pair whose motions are the longest, for the motions of all sensors: what is common keeps
+/// the errors of the pairs dependent, and the loops closed.
 Choice longest_choice(const RigReport& report) {
   Choice common;
   common.stride = 0;

@@ -24,7 +24,8 @@ bool bears_on(const RigReport& report, const RigFinding& finding, std::size_t pa
   return std::find(finding.pairs.begin(), finding.pairs.end(), pair) != finding.pairs.end();
 }
 
-/// Of the pairs of an open loop those of the sensor to blame, where it is one of them.
+/// Whether an open loop is why this pair should not be used: it is a pair of the loop, and one of the sensor
+/// to blame where that sensor is in the loop.
 bool bears_on(const RigReport& report, const Loop& loop, std::size_t pair) {
   const RigPairAnswer& answer = report.solution.pairs[pair];
   if (!is_one_of(answer.a, loop.sensors) || !is_one_of(answer.b, loop.sensors)) return false;

@@ -14,7 +14,7 @@ Terms terms_of(const RigWords& words) {
   return {words.name_a, words.name_b, {}};
 }
 
-/// Of what the rig file says of a pair.
+/// The terms for what the rig file says of a pair: with the sensors in the order of the file.
 Terms terms_of_file(const RigWords& words) {
   return words.listed_turned ? Terms{words.name_b, words.name_a, {}} : terms_of(words);
 }

@@ -32,7 +32,7 @@ class Clock {
 /// CLOCK_MONOTONIC, CLOCK_REALTIME and ppoll(2). Has no state: may be used from any thread.
 const Clock& system_clock();
 
-/// Of the system's clock [us].
+/// The times of system_clock() [us], see Clock::mono_us() and Clock::wall_us().
 std::int64_t mono_us();
 std::int64_t wall_us();
 

@@ -10,7 +10,7 @@
 
 namespace egocal::bus {
 
-/// Of the pair that the message names.
+/// The channel of a message: that of the pair that it names.
 inline std::string channel_of(const problem_t& message) {
   return problem_channel(message.sensor_a, message.sensor_b);
 }

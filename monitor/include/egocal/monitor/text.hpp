@@ -45,7 +45,7 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t max, std::si
 /// file is behind its name ("~/pairing.state: cannot be written").
 std::string without_folders(std::string_view text, std::size_t max);
 
-/// Of a screen [cells].
+/// The size of a screen [cells].
 struct Size {
   int width = 0, height = 0;
 };
