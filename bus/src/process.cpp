@@ -15,7 +15,8 @@ constexpr std::array<std::string_view, 6> roles{"player", "pairing",   "global",
                                                 "fast",   "diagnosis", "monitor"};
 constexpr std::array<std::string_view, 5> states{"waiting", "standby", "running", "paused", "ended"};
 
-/// In the order of Role. The diagnosis has no verb reset: it follows the session of the problems by itself.
+/// The verbs of each role, in the order of Role. The diagnosis has no verb reset: it follows the session of
+/// the problems by itself.
 constexpr std::array<std::string_view, 6> verbs{"pause, resume, step, seek, speed",
                                                 "pause, resume, reset",
                                                 "pause, resume",

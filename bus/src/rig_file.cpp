@@ -77,7 +77,7 @@ GoalOptions read_goal(const TomlTable& in, const std::string& key) {
           table->number("translation_m", goal_translation, "m"), std::nullopt};
 }
 
-/// A number, or what is none: "auto" is the default.
+/// Whether the stride is given: as a number, or as something that is none. "auto" is the default.
 bool gives_stride(const TomlTable& in) {
   return in.has("stride") && !(in.is_text("stride") && in.text("stride") == "auto");
 }
@@ -215,7 +215,7 @@ Rig understood(const toml::table& root, const std::string& file) {
   return rig;
 }
 
-/// Before toml++ sees the text.
+/// Refuses a text that is too large or has too many dots, before toml++ sees it.
 void check_size(const std::string& text, const std::string& file) {
   if (text.size() > max_file_size) throw error_at(file, 0, "", "is larger than a rig file can be (1 MiB)");
   long line = 1;

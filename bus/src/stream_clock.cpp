@@ -53,12 +53,12 @@ void StreamClock::remember(const Stamp& stamp) {
     remembered_[remembered_next_++ % remembered_.size()] = stamp;
 }
 
-/// Back, or ahead by more than the clock allows.
+/// Whether the time of the stream goes back, or ahead of the clock by more than largest_jump_us.
 bool StreamClock::leaps(const Stamp& from, const Stamp& to) const {
   return to.time_us < from.time_us || gain_us(from, to) > options_.largest_jump_us;
 }
 
-/// The time ran like the clock, for long enough.
+/// Whether the time of the stream ran like the clock, for long enough.
 bool StreamClock::steady() const {
   const double elapsed = static_cast<double>(newest_->mono_us - first_->mono_us);
   return elapsed >= static_cast<double>(options_.steady_us) &&

@@ -20,7 +20,7 @@ Refusal* known(std::vector<Refusal>& refusals, const std::string& reason) {
   return nullptr;
 }
 
-/// The first of its kind, to be reported.
+/// Counts a refusal. Returns it where it is the first of its kind, to be reported.
 std::optional<Refusal> add(HeardStream& stream, std::size_t most_refusals, const std::string& reason,
                            const std::string& cure) {
   if (Refusal* refusal = known(stream.refusals, reason)) {

@@ -42,7 +42,7 @@ void TimedLog::look_ahead() {
   }
 }
 
-/// Where the time of the next event fits neither of its neighbours.
+/// Corrects the time of the next event where it fits neither of its neighbours.
 void TimedLog::correct_next_time() {
   const std::int64_t time = ahead_[0].time_us;
   std::int64_t corrected = time;

@@ -13,10 +13,10 @@ namespace egocal::bus {
 /// Largest entry of statistics: products of two such entries stay far from overflow.
 inline constexpr double largest_entry = 1e30;
 
-/// No value is negative or NaN. Infinity may be meant: unknown.
+/// Whether no value is negative or NaN. Infinity may be meant: unknown.
 bool not_negative(std::initializer_list<double> values);
 
-/// The same, and all are finite.
+/// Whether no value is negative, and all are finite.
 bool finite_not_negative(std::initializer_list<double> values);
 
 /// Whether a direction that is not observable has a finite standard deviation. The other way round may be

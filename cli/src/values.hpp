@@ -16,7 +16,7 @@ namespace egocal::cli {
 /// A finite number in decimal digits; nothing otherwise.
 std::optional<double> finite_number(const std::string& text);
 
-/// As people write it: 10000000, 0.001, 1e+09.
+/// The number as people write it: 10000000, 0.001, 1e+09.
 std::string shortest(double value);
 
 /// "flat, rough or free".

@@ -56,7 +56,8 @@ struct Label {
 /// "good", "contradictory": whether the answer can be used, with a mark, at most 15 cells. Until there is a
 /// verdict: how far the pair is.
 Label verdict_of(const PairState& pair, Charset charset);
-/// What came since was not judged in time, or has moved the answer away from the one that was judged.
+/// Whether what came since the verdict was not judged in time, or has moved the answer away from the one that
+/// was judged.
 bool verdict_is_old(const PairState& pair);
 /// "optimal (proven)" or why not: whether another extrinsic explains the same motions better.
 Label proof_of(const calibration_t& answer);
@@ -74,7 +75,8 @@ std::string goal_text(const Diagnosis& diagnosis);
 std::string fit_text(const PairVerdict& verdict, Charset charset);
 /// "0.37012 ±0.0004 of camera, proven": what its lengths are multiplied by, or why that is not known.
 Label scale_text(const bus::CheckedScale& scale, Charset charset);
-/// The answer is of motions of many strides; the problem's stride is the best single one, and not in force.
+/// Whether the answer is of motions of many strides; the problem's stride is the best single one, and not in
+/// force.
 bool sums_strides(const problem_t& problem);
 /// "stride 4", "many strides".
 std::string stride_text(const problem_t& problem);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int most_exports = 10'000;  // a limit: of one pair and format in one folder
 
-/// Writes it under a name that no file has, so that no earlier export is overwritten. The name.
+/// Writes an export under a name that no file has, so that no earlier one is overwritten. Returns the name.
 std::string write_export(const std::string& a, const std::string& b, ExtrinsicFormat format,
                          const std::string& text) {
   const char* ending = format == ExtrinsicFormat::urdf     ? ".urdf"

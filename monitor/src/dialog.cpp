@@ -64,7 +64,7 @@ Text text_of(const PairState* pair, const ViewState& view, int width, int height
   return {};
 }
 
-/// At blanks, where there is one.
+/// The lines broken at blanks, where there is one, into rows of this width.
 std::vector<std::string> rows_of(const std::vector<std::string>& lines, int width) {
   std::vector<std::string> out;
   for (std::string line : lines) {

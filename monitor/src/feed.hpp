@@ -34,7 +34,7 @@ class Feed {
   /// Waits for something to happen, at most this long [ms], and delivers what has arrived.
   void wait(int milliseconds);
   Now now() const;
-  /// False: not sent, see error().
+  /// Sends a command. False: it was not sent, see error().
   bool send(const command_t& command) { return loop_.publish(bus::command_channel, command); }
   const std::string& error() const { return loop_.send_error(); }
   /// Why the network is away, with the remedy; empty: it is there.

@@ -80,7 +80,7 @@ json answer_json(const PairState& pair, const SolverTrack& solver) {
   return j;
 }
 
-/// Null where there is none.
+/// Adds the keys of the verdict, null where there is none.
 void verdict_into(json& p, const PairState& pair) {
   for (const char* key : {"verdict", "reason", "fit", "findings", "goal"}) p[key] = nullptr;
   if (!pair.verdict) return;
@@ -94,7 +94,7 @@ void verdict_into(json& p, const PairState& pair) {
   p["verdict_old"] = verdict_is_old(pair);
 }
 
-/// Null where no scale is looked for, or none was received.
+/// The scale of a pair; null where no scale is looked for, or none was received.
 json scale_json(const PairState& pair) {
   if (!pair.scale) return nullptr;
   const ScaleSolution& solution = pair.scale->solution;

@@ -63,7 +63,7 @@ void Model::follow_back(PairState& pair, const problem_t& message, Now now) {
   count_answer(pair, now);
 }
 
-/// Once, and again where their share has doubled.
+/// Notes outliers once, and again where their share has doubled.
 void Model::note_outliers(PairState& pair, Now now) {
   const double share = share_of_outliers(pair.problem);
   if (share > options_.many_outliers && share > 2 * pair.reported_left_out) {

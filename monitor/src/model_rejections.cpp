@@ -7,7 +7,7 @@
 
 namespace egocal::monitor {
 
-/// The first of each kind is an event.
+/// Counts rejections by their reason. The first of each kind is an event.
 void Model::watch_rejections(ProcessState& process, const std::string& reason, std::int64_t count, Now now) {
   const auto known = std::find_if(process.rejections.begin(), process.rejections.end(),
                                   [&](const bus::Refusal& refusal) { return refusal.reason == reason; });

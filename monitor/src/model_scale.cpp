@@ -9,7 +9,7 @@ namespace egocal::monitor {
 
 namespace {
 
-/// Shown by the motions, with a proof of this monitor's own.
+/// Whether the scale is shown by the motions, with a proof of this monitor's own.
 bool shown(const std::optional<bus::CheckedScale>& scale) {
   return scale && scale->verified && scale->solution.certified && scale->solution.observable;
 }

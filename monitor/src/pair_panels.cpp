@@ -88,7 +88,7 @@ void draw_transform(const Pane& pane, int y, const PairState& pair, Charset char
   }
 }
 
-/// At the right edge of the transform's rows.
+/// Draws the error at the right edge of the transform's rows.
 void draw_error(const Pane& pane, int y, const PairState& pair, Charset charset) {
   const char* label = pair.shown.reference == ReferenceKind::truth ? "error" : "off nominal";
   for (int row = 0; row < 2; ++row) {

@@ -133,7 +133,7 @@ Cell cell_of_answer(const PairState& pair, const calibration_t& answer, PairColu
   }
 }
 
-/// Empty: nothing is drawn there.
+/// The cell of a column; empty: nothing is drawn there.
 std::optional<Cell> cell_of(const PairState& pair, const PlacedColumn& placed, bool selected, Now now,
                             Charset charset) {
   const PairColumn column = placed.column;

@@ -19,8 +19,8 @@ int run_once(const ProgramOptions& options, Model& model, Source& source, Charse
 /// received.
 int run_follow(const ProgramOptions& options, Model& model, Source& source, Charset charset);
 
-/// To standard output. False: the reader has seen enough and has gone. Throws Error where the output cannot
-/// be written otherwise.
+/// Prints to standard output. False: the reader has seen enough and has gone. Throws Error where the output
+/// cannot be written otherwise.
 bool print(const std::string& text);
 
 }  // namespace egocal::monitor

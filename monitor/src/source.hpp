@@ -24,16 +24,16 @@ class Source {
   bool at_end() const { return recording_ && recording_->at_end(); }
   const std::string& name() const { return name_; }
   std::string network_error() const { return feed_ ? feed_->network_error() : std::string(); }
-  /// Where nothing was received.
+  /// What is said where nothing was received.
   std::string nothing_in_words() const;
 
   /// wait() also returns when one of these is readable.
   void watch(std::vector<int> fds);
   /// Waits at most this long [ms]. Live messages are handed to the model at once.
   void wait(int milliseconds);
-  /// Delivers what is due of a log; the time of the model.
+  /// Delivers what is due of a log, and returns the time of the model.
   Now advance();
-  /// The reason why it could not be sent; empty: sent.
+  /// Sends a command. Returns the reason why it could not be sent; empty: it was sent.
   std::string send(const command_t& command);
 
  private:

@@ -114,7 +114,7 @@ Charset charset_for(const std::optional<Charset>& wanted) {
   return wanted.value_or(plain ? Charset::ascii : Charset::unicode);
 }
 
-/// False: the terminal or its user wants none.
+/// Starts colours. False: the terminal or its user wants none.
 bool start_colours(bool monochrome) {
   const char* no_color = std::getenv("NO_COLOR");
   if (monochrome || (no_color != nullptr && *no_color != '\0') || !has_colors()) return false;

@@ -14,14 +14,14 @@ void remember_modes();
 void prepare_rescue();
 /// Standard error as it was before it was captured: a duplicate of the descriptor; -1: it was not.
 void remember_stderr(int real_stderr);
-/// Modes and standard error as they were.
+/// Restores modes and standard error as they were.
 void restore_modes_and_stderr();
 
-/// From here on signals are kept for those below, and those of a crash restore the terminal first.
+/// From here on signals are kept for the functions below, and those of a crash restore the terminal first.
 void handle_signals();
-/// From here on an ending needs no care.
+/// From here on signals act by default: an ending needs no care any more.
 void default_signals();
-/// SIGINT, SIGTERM, SIGHUP or SIGQUIT has come.
+/// Whether SIGINT, SIGTERM, SIGHUP or SIGQUIT has come.
 bool quit_asked();
 /// Whether the size has changed since the last call.
 bool take_resize();

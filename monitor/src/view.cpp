@@ -27,20 +27,21 @@ class HeaderLine {
 
   int width() const { return pane_.width(); }
   bool has_room_for(int cells) const { return x_ + cells <= end_; }
-  /// False: there is no room for it.
+  /// Draws an item. False: there is no room for it.
   bool item(const std::string& text, Style style, int gap = 0) {
     if (!has_room_for(width_of(text))) return false;
     must(text, style, gap);
     return true;
   }
-  /// Also where the clock would have been.
+  /// Draws an item also where the clock would have been.
   void must(const std::string& text, Style style, int gap = 0) { x_ = pane_.text(x_, 0, text, style) + gap; }
   /// Says before the clock that the network is away: nothing else in this line is current then.
   void say_away() {
     constexpr const char* no_network = "NO NETWORK";
     if (!view_.network_error.empty() && x_ + width_of(no_network) <= width()) must(no_network, Style::bad, 2);
   }
-  /// As much of it as there is room for. A paused view says so at any width: its clock does not go on.
+  /// Draws as much of the clock as there is room for. A paused view says so at any width: its clock does not
+  /// go on.
   void draw_clock(const std::string& before = "") {
     const Style style = view_.frozen ? Style::warning : Style::dim;
     for (const std::string& text : {before + right_, right_})
@@ -52,7 +53,7 @@ class HeaderLine {
  private:
   static constexpr const char* view_paused = "VIEW PAUSED";
 
-  /// At the end of the line; false: it would begin before after + 1.
+  /// Draws a text at the end of the line. False: it would begin before after + 1.
   bool draw_right(const std::string& text, Style style, int after) {
     const int at = width() - width_of(text) - 1;
     if (at <= after) return false;

@@ -18,7 +18,7 @@ Pose pose_of(const pybind11::handle& numbers);
 /// Dicts with the keys of `egocal solve --json` (docs/json.md).
 pybind11::list findings_of(const std::vector<Finding>& findings);
 
-/// For pickling: all that findings_of() shows.
+/// The findings for pickling: all that findings_of() shows.
 pybind11::list states_of(const std::vector<Finding>& findings);
 std::vector<Finding> findings_from(const pybind11::handle& states);
 

@@ -33,8 +33,8 @@ void DiagnosedPair::take_pose(Side side, const StampedPose& pose, std::int64_t m
   newest_pose_mono_us = mono_us;
 }
 
-/// At the first pose of a stream after a restart: poses between the saved state and this one are never
-/// judged.
+/// Notes at the first pose of a stream after a restart what was missed: poses between the saved state and
+/// this one are never judged.
 void DiagnosedPair::note_what_was_missed(Side side, const StampedPose& pose) {
   if (!std::exchange(continues[side == Side::b], false) || sample.poses(side).empty()) return;
   const std::int64_t missed = pose.time_us - sample.poses(side).back().time_us;

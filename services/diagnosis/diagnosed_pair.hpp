@@ -39,15 +39,15 @@ struct DiagnosedPair {
   void restore(DriveSample saved_sample, FollowedClock saved_clock, PairMemory saved);
   PairMemory memory() const;
 
-  /// A new problem, or poses alone, are to be judged. early: only if nothing more comes, and it need not
-  /// wait.
+  /// Whether a new problem, or poses alone, are to be judged. early: only if nothing more comes, and the
+  /// judgement need not wait.
   bool to_be_judged(std::int64_t mono_us, bool early, const DiagnosingOptions& options) const;
-  /// The newest answer is far from the judged one (DiagnosingOptions::far_from_judged). Answers true at most
+  /// Whether the newest answer is far from the judged one (DiagnosingOptions::far_from_judged). True at most
   /// once for each problem; a solve takes microseconds.
   bool left_what_was_judged(const DiagnosingOptions& options);
   /// The scale of the newest problem, which comes in a separate message; empty: it has not come.
   std::optional<double> scale_in_force() const;
-  /// What of the session cannot be judged. poses: of each stream at common times.
+  /// The part of the session that cannot be judged. poses: number of poses of each stream at common times.
   Unseen unseen(std::size_t poses) const;
   /// Time until which both streams have poses [us]; 0: one of them has none.
   std::int64_t common_end_us() const;

@@ -210,7 +210,7 @@ void Diagnosing::restart_after_move(DiagnosedPair& pair) {
   ++heartbeat_.counter("restarts after a move");
 }
 
-/// For listeners that came late.
+/// Sends the verdicts again, for listeners that came late.
 void Diagnosing::repeat() {
   for (const auto& pair : pairs_)
     if (pair->verdict) loop_.publish(bus::verdict_channel(pair->config.a, pair->config.b), *pair->verdict);

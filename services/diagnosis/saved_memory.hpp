@@ -16,7 +16,7 @@ namespace egocal::services {
 /// Keeps a Memory on disk, whole each time.
 class SavedMemory {
  public:
-  /// In the file system. Throws Error as open_state_medium() does.
+  /// Keeps the memory in a file of this name. Throws Error as open_state_medium() does.
   SavedMemory(const std::string& file, const bus::Rig& rig, StateFile::Clock clock = boot_time,
               const StateOptions& options = {});
 

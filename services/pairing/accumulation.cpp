@@ -18,7 +18,8 @@ namespace {
 /// as many as a player has in flight.
 constexpr std::int64_t farthest_refused = 256;
 
-/// For a state that was read from a file: its counts must not overflow later.
+/// Whether the refusals in a state that was read from a file are plausible: its counts must not overflow
+/// later.
 bool plausible_refusals(const ChannelState& state) {
   const auto plausible = [](const auto& entry) {
     return entry.first >= 0 && entry.second.times >= 0 && entry.second.times < INT32_MAX / 2 &&
@@ -90,7 +91,8 @@ void Accumulation::hand_on(Channel& channel, const std::vector<NumberedPose>& sa
     }
 }
 
-/// For a message that the stream misses: its sender can repeat it, if it was the network that damaged it.
+/// Notes the refusal of a message that the stream misses: its sender can repeat it, if it was the network
+/// that damaged it.
 void Accumulation::note_refusal(Channel& channel, std::int64_t number, std::int64_t refused_before) {
   const std::int64_t expected = channel.stream.expected();
   if (expected < 0 || number < expected || number - expected > farthest_refused) return;

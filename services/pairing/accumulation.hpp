@@ -40,8 +40,8 @@ struct Refusals {
   std::int32_t times = 0;
   std::int32_t apart =
       0;  ///< of these, after another message, so that they are no copies made by the network
-  /// The log itself is damaged: the message came damaged twice, or so often that its sender has no other
-  /// copy.
+  /// Whether the log itself is damaged: the message came damaged twice, or so often that its sender has no
+  /// other copy.
   bool in_the_log() const { return apart >= 2 || times >= 3; }
 };
 
@@ -72,7 +72,7 @@ class Accumulation {
 
   AccumulationState state() const;
   void restore(AccumulationState state);
-  /// After an interruption: senders will repeat what was not acknowledged.
+  /// To be called after an interruption: senders will repeat what was not acknowledged.
   void settle();
 
   const std::vector<PairSession>& pairs() const { return pairs_; }

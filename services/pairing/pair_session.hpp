@@ -55,24 +55,25 @@ class PairSession {
   /// Pairs the poses that were held back while the clocks were compared: no pose comes for a while, and at
   /// the end of a log none ever would. What later poses give stays the same.
   void release_held(std::vector<MotionOut>& out);
-  /// Whether there are such poses.
+  /// Whether there are poses that release_held() would pair.
   bool can_release() const { return state_.session >= 0 && !paused() && pairing().can_release(); }
   /// Why poses that have come gave no motion: the clocks are not compared yet. One line; empty otherwise.
   std::string without_clock() const;
-  /// The next pose begins a new session.
+  /// Lets the next pose begin a new session.
   void reset();
   void pause(bool paused) { state_.paused = paused; }
   bool paused() const { return state_.paused; }
 
-  /// Something new is in the problem since the last message().
+  /// Whether something new is in the problem since the last message().
   bool fresh() const { return fresh_; }
-  /// message() will first choose the weights of a short drive, which takes about 2 ms.
+  /// Whether message() will first choose the weights of a short drive, which takes about 2 ms.
   bool costs_a_choice() const { return has_problem() && !scale_ && drive_.costs_a_choice(); }
   /// The current problem, without the host of the sender; empty: there is none yet.
   std::optional<problem_t> message();
   /// The current problem of the unknown scale; empty: no scale is to be found, or there are no motions yet.
   std::optional<scale_problem_t> scale_message() const;
-  /// As many statuses as senders need are sent, so this chooses no weights (MotionPairing::running_counts).
+  /// Adds the counts of this pair to the counters of a status. As many statuses as senders need are sent, so
+  /// this chooses no weights (MotionPairing::running_counts).
   void count(std::map<std::string, std::int64_t>& counters) const;
 
   PairState state() const;

@@ -26,7 +26,7 @@ class Pairing {
   /// saved: null means that the state is lost when the process ends.
   Pairing(bus::Loop& loop, bus::Heartbeat& heartbeat, const bus::Rig& rig, std::unique_ptr<SavedState> saved,
           const PairingServiceOptions& options = {});
-  /// With a last snapshot.
+  /// Saves a last snapshot.
   ~Pairing();
   Pairing(const Pairing&) = delete;
   Pairing& operator=(const Pairing&) = delete;

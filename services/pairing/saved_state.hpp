@@ -15,7 +15,7 @@ namespace egocal::services {
 /// Keeps an Accumulation on disk: a snapshot, and every input since then.
 class SavedState {
  public:
-  /// In the file system. Throws Error as open_state_medium() does.
+  /// Keeps the state in a file of this name. Throws Error as open_state_medium() does.
   SavedState(const std::string& file, const bus::Rig& rig, StateFile::Clock clock = boot_time,
              const StateOptions& options = {});
   SavedState(std::unique_ptr<StateMedium> medium, const bus::Rig& rig, StateFile::Clock clock,
@@ -34,10 +34,10 @@ class SavedState {
 
   /// Takes note of an input that is being applied.
   void note(const Input& input);
-  /// Afterwards everything noted is on the disk. Throws Error if that fails; a later snapshot repairs it.
+  /// Writes everything noted to the disk. Throws Error if that fails; a later snapshot repairs it.
   void save(const Accumulation& accumulation);
   void snapshot(const Accumulation& accumulation);
-  /// Everything noted is on disk.
+  /// Whether everything noted is on the disk.
   bool complete() const { return !broken_ && inputs_.bytes().empty(); }
 
  private:

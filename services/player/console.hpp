@@ -28,15 +28,15 @@ class Console {
   /// Prints a line without breaking the line that shows the progress.
   void say(const std::string& line);
 
-  /// What has been skipped just now; of the first most_reported places each by itself.
+  /// Says what has been skipped just now; of the first most_reported places each by itself.
   void say_damage(const bus::LogDamage& damage, std::uint64_t most_reported);
-  /// This much of it is known already.
+  /// Takes this much of the damage as reported already.
   void take_as_reported(const bus::LogDamage& damage);
 
-  /// What could not be played of the log.
+  /// Says what could not be played of the log.
   void report(const std::string& log, const Tape& tape);
 
-  /// At most once a period, or for the last time.
+  /// Shows the progress, at most once a period, or for the last time.
   void show(const Progress& progress, std::int64_t mono_us, std::int64_t period_us, bool last);
 
  private:

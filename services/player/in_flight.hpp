@@ -47,8 +47,8 @@ class InFlight {
   /// the log after the acknowledged one. If pairing has that message, the log holds nothing for the gap.
   std::vector<acknowledgement_t> following() const;
 
-  /// A message of the channel was sent, and pairing has none yet. More messages must wait: if the first one
-  /// is lost, pairing would take a later one for the beginning.
+  /// Whether a message of the channel was sent, and pairing has none yet. More messages must wait then: if
+  /// the first one is lost, pairing would take a later one for the beginning.
   bool begins(const std::string& channel) const;
 
   bool heard() const { return run_.has_value(); }            ///< any pairing process, ever

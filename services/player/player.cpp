@@ -126,7 +126,7 @@ void Player::obey(const Control& control) {
   play();
 }
 
-/// Stays where it is if there is nothing so far into the log.
+/// Goes to this place in the log [s]. The player stays where it is if there is nothing so far into the log.
 void Player::seek(double seconds) {
   // a copy: the log may have been moved, or its name given to another one
   Tape there = tape_;
@@ -156,7 +156,8 @@ void Player::load() {
   console_.say_damage(tape_.damage(), options_.pace.most_reported);
 }
 
-/// From the start of what is to be played.
+/// Starts again from the start of what is to be played. False: the options do not ask for it, or nothing is
+/// there.
 bool Player::begin_again() {
   if (!options_.loop) return false;
   report();

@@ -11,7 +11,8 @@ namespace egocal::services {
 
 namespace {
 
-/// In the background (& in a shell) the keys belong to the shell, and reading them would stop this process.
+/// Whether this process is in the foreground. In the background (& in a shell) the keys belong to the shell,
+/// and reading them would stop this process.
 bool in_foreground() {
   return tcgetpgrp(STDIN_FILENO) == getpgrp();
 }

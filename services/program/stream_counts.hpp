@@ -12,7 +12,7 @@ namespace egocal::services {
 
 void add(const StreamCounts& counts, StreamCounts& sum);
 
-/// By the names that a process's status has for them.
+/// The counts by the names that a process's status has for them.
 std::map<std::string, std::int64_t> named(const StreamCounts& counts);
 
 }  // namespace egocal::services

@@ -21,7 +21,7 @@ struct ReceivedProblem {
   Problem problem;
 };
 
-/// The last answer, if there is one, is an answer to this very problem.
+/// Whether there is a last answer, and it is one to this very problem.
 template <class Answer, class Problem>
 bool answers(const std::optional<Answer>& last, const Problem& problem) {
   return last && last->session == problem.session && last->seq == problem.seq && last->utime == problem.utime;

@@ -38,17 +38,17 @@ class Solver {
 
   /// A problem that came since the last call; its session is the pair's from now on.
   std::optional<ReceivedProblem> take(std::size_t pair);
-  /// Once a second and on commands.
+  /// Puts the state of this process into its status, once a second and on commands.
   void report();
 
   /// Called when problems may be waiting, and once a second, because another process may have fallen silent.
   virtual void answer_newest() = 0;
-  /// Once a second: scales of a pairing that is silent.
+  /// Called once a second: sends the scales again while pairing is silent.
   virtual void repeat_scales() = 0;
-  /// An answer of another process to a problem of this pair.
+  /// Takes an answer of another process to a problem of this pair.
   virtual void hear(std::size_t pair, const calibration_t& message) = 0;
   virtual void reset(std::size_t pair) = 0;
-  /// While nothing is paused.
+  /// The state of this process while nothing is paused.
   virtual bus::State state() const = 0;
   /// Advice to the user about the other solvers, one line; empty: none.
   virtual std::string advice() const = 0;

@@ -47,17 +47,19 @@ class StateMedium {
   StateMedium& operator=(const StateMedium&) = delete;
   virtual ~StateMedium() = default;
 
-  /// For messages.
+  /// The name of the medium, for messages.
   virtual const std::string& name() const = 0;
-  /// Empty: there is no file. Throws Error where it cannot be read, or is not what is expected.
+  /// Reads the content. Empty: there is no file. Throws Error where it cannot be read, or is not what is
+  /// expected.
   virtual std::optional<Found> read(const Expected& expected) = 0;
-  /// In one step, after a power cut, too. Throws Error where the disk does not take it; the old content is
-  /// then still there.
+  /// Replaces the content in one step, after a power cut, too. Throws Error where the disk does not take it;
+  /// the old content is then still there.
   virtual void replace(std::span<const std::byte> bytes) = 0;
-  /// Only after replace(). Throws Error likewise; a part of the bytes may have been written then, and only
-  /// another replace() helps.
+  /// Adds to the content. Only after replace(). Throws Error likewise; a part of the bytes may have been
+  /// written then, and only another replace() helps.
   virtual void add(std::span<const std::byte> bytes) = 0;
-  /// False: nothing has been written yet, or the file was removed, moved, replaced or cut off since then.
+  /// Whether the content is where it was written. False: nothing has been written yet, or the file was
+  /// removed, moved, replaced or cut off since then.
   virtual bool in_place() const = 0;
   /// Renames the file so that it stays; its new name. Throws Error where that is not possible.
   virtual std::string keep_aside() = 0;
@@ -66,8 +68,8 @@ class StateMedium {
 /// What is said of a file that is something else than a state of this process.
 Error not_a_state(const std::string& file, const std::string& process);
 
-/// In the file system, by whatever symbolic links the file is named. Throws Error where another process holds
-/// it, or it cannot be held.
+/// A medium in the file system, the same by whatever symbolic links the file is named. Throws Error where
+/// another process holds it, or it cannot be held.
 std::unique_ptr<StateMedium> open_state_medium(const std::string& file, const StateOptions& options = {});
 
 }  // namespace egocal::services

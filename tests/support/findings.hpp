@@ -40,8 +40,8 @@ inline Finding certain_finding(const Calibration& calibration, const std::string
   return *finding;
 }
 
-/// The right answer is that of the finding, within the limits [rad, m], and the one as given is called
-/// contradictory.
+/// Expects that the answer of the finding is the right one, within the limits [rad, m], and that the one as
+/// given is called contradictory.
 inline void expect_cured(const Streams& right, const Calibration& calibration, const Finding& finding,
                          double rotation, double translation) {
   EXPECT_EQ(calibration.verdict, Verdict::contradictory) << calibration.reason;

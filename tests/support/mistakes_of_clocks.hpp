@@ -39,7 +39,7 @@ inline Trajectory late_from_the_middle(Trajectory trajectory, std::int64_t later
 
 enum class Half { positions, rotations };
 
-/// With that half of each pose as it was the given number of poses before.
+/// The trajectory with that half of each pose as it was the given number of poses before.
 template <typename PosesBefore>
 Trajectory with_half_of_earlier(const Trajectory& trajectory, Half half, const PosesBefore& poses_before) {
   Trajectory result = trajectory;

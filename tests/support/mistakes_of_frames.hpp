@@ -65,7 +65,7 @@ inline Trajectory knocked(Trajectory trajectory, double part, const Pose& T_old_
   return trajectory;
 }
 
-/// Every pose that of its own position, but in the frame of the sensor: the position of the inverse pose.
+/// Every pose with its position in the frame of the sensor: the position of the inverse pose.
 inline Trajectory with_inverse_positions(const Trajectory& trajectory) {
   return changed(trajectory, [](const Pose& pose) { return Pose{pose.rotation, inverse(pose).translation}; });
 }

@@ -28,7 +28,7 @@ inline Streams simulated_drive(SimulationOptions options) {
           {}};
 }
 
-/// With noise of this part of every motion; a minute.
+/// A simulated drive with noise of this part of every motion; a minute.
 inline Streams noisy_drive(Terrain terrain, double noise, int poses = 601) {
   SimulationOptions options;
   options.terrain = terrain;

@@ -15,7 +15,7 @@ struct AnswerAgeOptions {
   double answered_within = 5;
 };
 
-/// For how long newer problems have gone unanswered.
+/// Measures for how long newer problems have gone unanswered.
 class AnswerAge {
  public:
   using Number = std::pair<std::int64_t, std::int64_t>;  ///< session and number of an answer

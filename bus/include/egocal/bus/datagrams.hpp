@@ -82,7 +82,7 @@ class Reassembly {
     std::size_t missing = 0;
 
     std::size_t memory() const { return bytes.size() + sizeof(Part) * parts.size(); }
-    /// Nothing overlaps, nothing is missing.
+    /// Whether the fragments neither overlap nor leave gaps.
     bool without_holes() const;
   };
   using Place = std::list<Partial>::iterator;

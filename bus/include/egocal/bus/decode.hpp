@@ -34,7 +34,7 @@ bool lengths_fit(const verdict_t*, Bytes bytes);
 bool lengths_fit(const scale_problem_t*, Bytes bytes);
 bool lengths_fit(const scale_t*, Bytes bytes);
 
-/// Fingerprint and lengths are those of the type.
+/// Whether fingerprint and lengths are those of the type.
 template <class Message>
 bool is_a(Bytes bytes) {
   return lengths_fit(static_cast<const Message*>(nullptr), bytes) &&

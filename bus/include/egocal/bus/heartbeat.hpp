@@ -62,7 +62,8 @@ class Heartbeat {
 
   void set_state(State state);
   State state() const { return state_; }
-  /// Empty: no error any more. While there is none, a network that is away is reported in its place.
+  /// Sets the error of the status; empty: there is none any more. While there is none, a network that is away
+  /// is reported in its place.
   void set_error(const std::string& error);
 
   std::vector<acknowledgement_t>& acknowledgements() { return acknowledgements_; }
@@ -77,10 +78,10 @@ class Heartbeat {
   void announce_silence(std::chrono::seconds at_most);
 
   bool alive(Role role) const;
-  /// The network has been there for a whole heartbeat timeout: all others have sent their status.
+  /// Whether the network has been there for a whole heartbeat timeout: all others have sent their status.
   bool settled() const;
   std::optional<Role> role_of(const std::string& name) const { return peers_.role_of(name); }
-  /// Another living process has this name and precedes this one, see Peers.
+  /// Another living process that has this name and precedes this one, see Peers; empty: there is none.
   std::optional<Peer> senior_namesake() const;
 
  private:

@@ -40,8 +40,8 @@ struct LogDamage {
 /// lost event.
 class EventNumbers {
  public:
-  /// An event has been read, this many damaged bytes after the one before. True: the number is not the next
-  /// one.
+  /// Counts an event that has been read, this many damaged bytes after the one before. True: the number is
+  /// not the next one.
   bool take(std::int64_t number, std::uint64_t damaged_bytes);
   /// Begins with the event of this number; what is before it is not missed.
   void begin_at(std::int64_t number);
@@ -80,7 +80,7 @@ class LogReader {
 
   /// The next event; empty at the end. Throws Error where the file cannot be read.
   std::optional<LogEvent> next();
-  /// Back to the first event.
+  /// Goes back to the first event.
   void rewind();
   /// Moves by bisection to a place before every event that was recorded at time_us or later. next() continues
   /// there, possibly with events that are a little earlier. Times must ascend, except for the disorder of

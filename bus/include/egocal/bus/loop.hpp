@@ -110,7 +110,8 @@ class Loop {
   const std::map<std::string, std::int64_t>& undecodable() const { return undecodable_; }
   void count_undecodable(const std::string& channel);
 
-  /// False: not sent, see send_error(). That is counted, and no reason to end: the next message may go.
+  /// Sends a message. False: it was not sent, see send_error(). That is counted, and no reason to end: the
+  /// next message may go.
   bool publish_bytes(const std::string& channel, Bytes bytes);
   template <class Message>
   bool publish(const std::string& channel, const Message& message) {
@@ -141,7 +142,7 @@ class Loop {
   void watch(int fd, Callback callback);
   void unwatch(int fd);
 
-  /// Until stop() or a signal. Rethrows what a handler threw.
+  /// Runs until stop() or a signal. Rethrows what a handler threw.
   void run();
   /// One turn: waits at most this long for anything to happen and handles it. False once the loop was
   /// stopped.
@@ -156,7 +157,7 @@ class Loop {
   std::map<std::string, std::int64_t> undecodable_;
 };
 
-/// The machine's own.
+/// The machine's own name.
 std::string host_name();
 
 }  // namespace egocal::bus

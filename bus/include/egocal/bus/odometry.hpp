@@ -21,7 +21,7 @@ struct ReceivedOdometry {
 /// it. 0: too short.
 std::int64_t utime_in(Bytes message);
 
-/// With the scale of the sensor applied.
+/// Decodes a message, with the scale of the sensor applied.
 ReceivedOdometry decode_odometry(const Sensor& sensor, Bytes bytes);
 
 }  // namespace egocal::bus

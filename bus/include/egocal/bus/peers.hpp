@@ -36,11 +36,11 @@ struct Namesake {
 /// are those of the loop's clock [us].
 class Peers {
  public:
-  /// True: not known before. "ended" is the last status of a process: one that it sent before and that the
-  /// network delivers later does not revive it.
+  /// Takes a status. True: its process was not known before. "ended" is the last status of a process: one
+  /// that it sent before and that the network delivers later does not revive it.
   bool hear(const status_t& status, std::int64_t now_us);
 
-  /// Some process of this role is running and sent its status within the timeout.
+  /// Whether some process of this role is running and sent its status within the timeout.
   bool alive(Role role, std::int64_t now_us, std::int64_t timeout_us) const;
   /// Role of the process of this name that sent last; empty: none did.
   std::optional<Role> role_of(const std::string& name) const;

@@ -22,10 +22,10 @@ enum class State {
   ended,
 };
 
-/// As status_t carries them.
+/// The names of roles and states, as status_t carries them.
 std::string_view role_name(Role role);
 std::string_view state_name(State state);
-/// Empty: another version's.
+/// The role or state of a name; empty: it is one of another version.
 std::optional<Role> role_from_name(std::string_view name);
 std::optional<State> state_from_name(std::string_view name);
 
@@ -40,7 +40,7 @@ std::chrono::seconds announced_silence(const status_t& status);
 /// Whether a process of this role does anything on a command_t with this verb ("seek 3": seek). Listeners
 /// alone (monitor, up, export) obey none.
 bool knows_verb(Role role, std::string_view verb);
-/// The verbs that it knows, for messages: "pause, resume, reset"; empty: none.
+/// The verbs that a process of this role knows, for messages: "pause, resume, reset"; empty: none.
 std::string verbs_of(Role role);
 
 }  // namespace egocal::bus

@@ -62,7 +62,8 @@ struct Rig {
 /// Reads a rig file (TOML, docs/rig.md). Throws Error naming file, line and key on anything that is not
 /// understood: a misspelt key is an error, not ignored.
 Rig read_rig(const std::string& file);
-/// Its text alone, for parse_rig(): of what can be read only once. Throws Error where it cannot be read.
+/// The text of a rig file alone, for parse_rig(): of a file that can be read only once. Throws Error where it
+/// cannot be read.
 std::string rig_text(const std::string& file);
 /// The same from text; file is the name that errors carry.
 Rig parse_rig(const std::string& text, const std::string& file);
@@ -74,7 +75,7 @@ const Sensor& sensor(const Rig& rig, const std::string& name);
 PairingOptions drive_options(const Rig& rig, const PairConfig& pair);
 /// How the poses of each of the rig's sensors are put in order.
 StreamOptions stream_options(const Rig& rig);
-/// Whose scale is to be found; empty: both are known.
+/// The side of the pair whose scale is to be found; empty: both scales are known.
 std::optional<Side> unscaled_side(const Rig& rig, const PairConfig& pair);
 
 }  // namespace egocal::bus

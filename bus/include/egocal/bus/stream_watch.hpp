@@ -64,13 +64,13 @@ class StreamWatch {
  public:
   explicit StreamWatch(const std::vector<Sensor>& sensors, const StreamWatchOptions& options = {});
 
-  /// A message of any channel. Returns a refusal that is the first of its kind on a sensor's channel.
+  /// Takes a message of any channel. Returns a refusal that is the first of its kind on a sensor's channel.
   std::optional<Refusal> hear(const std::string& channel, Bytes bytes, std::int64_t mono_us);
 
   const std::vector<SensorStream>& sensors() const { return sensors_; }
   /// Channels that no sensor of the rig names, by name. At most most_others.
   const std::map<std::string, HeardStream>& others() const { return others_; }
-  /// Some sensor has sent nothing for silent_us: the other channels are looked at.
+  /// Whether some sensor has sent nothing for silent_us: the other channels are then looked at.
   bool misses_any(std::int64_t mono_us) const;
 
   const StreamWatchOptions& options() const { return options_; }

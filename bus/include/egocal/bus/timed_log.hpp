@@ -30,9 +30,9 @@ class TimedLog {
   /// The next event with its time, which may be corrected; empty at the end. Throws Error where the file
   /// cannot be read.
   std::optional<LogEvent> next();
-  /// Back to the first event.
+  /// Goes back to the first event.
   void rewind();
-  /// To a place before every event of this time or a later one (LogReader::seek).
+  /// Moves to a place before every event of this time or a later one (LogReader::seek).
   void seek(std::int64_t time_us);
 
   const LogDamage& damage() const { return log_.damage(); }       ///< up to two events ahead of next()

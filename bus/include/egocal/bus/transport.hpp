@@ -49,9 +49,10 @@ class Transport {
   virtual SendStatus send(std::string_view channel, Bytes bytes) = 0;
   /// The next message of a wanted channel. False: nothing is waiting. Never waits.
   virtual bool receive(const Wanted& wanted, Received& message) = 0;
-  /// Readable while something waits; -1: there is none, and receive() is to be asked.
+  /// A file descriptor that is readable while something waits; -1: there is none, and receive() is to be
+  /// asked.
   virtual int fd() const = 0;
-  /// receive() may have something although fd() is not readable.
+  /// Whether receive() may have something although fd() is not readable.
   virtual bool ready() const = 0;
   /// Looks whether the network is still there and connects again where it came back. To be called about once
   /// a second.

@@ -23,7 +23,7 @@ struct Judged {
   std::int64_t poses = 0;                   ///< of the slower stream, that the fit is about; 0: not measured
   Observability observability = unknown();  ///< of the answer, as_judged()
 
-  /// No direction is observable.
+  /// The observability of an answer without an observable direction.
   static Observability unknown();
 };
 

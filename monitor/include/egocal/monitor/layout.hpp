@@ -43,7 +43,7 @@ struct PlacedColumn {
   PairColumn column;
   int x = 0, width = 0;
 };
-/// From left to right; one blank between columns.
+/// The columns from left to right, with one blank between them.
 std::vector<PlacedColumn> layout_pair_table(int width);
 
 struct DetailLayout {

@@ -85,7 +85,7 @@ struct SolverTrack {
   Now at;                  ///< its arrival
   bool silent = false;
   std::int64_t answers = 0;
-  /// Since when it answers on its own, without the global solver; empty: it does not.
+  /// Since when this solver answers on its own, without the global solver; empty: it does not.
   std::optional<std::int64_t> alone_mono_us{};
   bool settled = false;  ///< it once did for ModelOptions::settle: what it asks for before is no fallback
   History history;       ///< over seconds of measured time since the session began
@@ -111,7 +111,7 @@ struct PairVerdict {
   std::string sender;
   std::int64_t seq = 0;  ///< of the problem that was judged
   Now at;                ///< arrival
-  /// Since when motions come that it does not know; empty: it knows all.
+  /// Since when motions come that the verdict does not know; empty: it knows all.
   std::optional<std::int64_t> behind_mono_us{};
   double old = 0;  ///< longer than that of a diagnosis that works: for so long [s]
 };
@@ -140,8 +140,8 @@ struct PairState {
   std::optional<calibration_t> previous;  ///< the answer that counted when the last session ended
   int behind_in_a_row = 0;                ///< newest problems that are older than the answer that counts
   bus::AnswerAge unanswered;
-  /// The answer that counts is not one of the present [s]: for so long no solver has answered what came
-  /// since, or nothing has come from pairing.
+  /// How old the answer that counts is where it is not one of the present [s]: for so long no solver has
+  /// answered what came since, or nothing has come from pairing.
   double old = 0;
   int counted = -1;  ///< the solver whose answer counts (egocal::outranks); -1: no answer yet
   Shown shown;
@@ -156,7 +156,7 @@ struct PairState {
   bool time_offset_known = false;
   double reported_left_out = 0;  ///< share of the motions that contradict the others, as last reported
   std::int64_t gap_count = 0;
-  /// By the commands received; motions that are still accepted override it.
+  /// Whether the pair is paused by the commands received; motions that are still accepted override it.
   bool paused = false;
   std::int64_t paused_mono_us = 0;
   std::int64_t idle_mono_us = 0;  ///< when last there was nothing to solve
@@ -239,7 +239,7 @@ class Model {
   std::int64_t events_seen() const { return events_seen_; }    ///< ever, also those that are no longer kept
   std::int64_t ignored() const { return ignored_; }
   std::int64_t messages() const { return messages_; }
-  /// Anything of a process that is not this one.
+  /// Whether anything of another process than this one was heard.
   bool heard_others() const;
   Now now() const { return now_; }
   const ModelOptions& options() const { return options_; }
@@ -296,15 +296,15 @@ class Model {
 /// Whether a pair's calibration was paused by a user: by the commands received for it, or because
 /// pairing reports it of all its pairs (a monitor that started later has received no command).
 bool pair_is_paused(const Model& model, const PairState& pair);
-/// There are answers, and the pairing process whose problems they answer sends nothing, though it has not
-/// reported its end: it hangs or is gone. It repeats its problems once a second.
+/// Whether there are answers, and the pairing process whose problems they answer sends nothing, though it has
+/// not reported its end: it hangs or is gone. A pairing process repeats its problems once a second.
 bool pairing_is_silent(const PairState& pair);
-/// Pairing is silent about this pair alone, for a known cause: a session has begun in which it finds no
-/// motion, and so sends no problem.
+/// Whether pairing is silent about this pair alone, for a known cause: a session has begun in which it finds
+/// no motion, and so sends no problem.
 bool session_has_no_motion(const PairState& pair);
 /// How far the answer that counts is from the one that was called good; empty: the verdict holds for it.
 std::optional<bus::Departure> departure_of(const PairState& pair);
-/// The answer is verified and proven, its verdict is good and about it, and both are of the present.
+/// Whether the answer is verified and proven, its verdict is good and about it, and both are of the present.
 bool is_good(const PairState& pair);
 /// "lidar -> camera", for events and lines.
 std::string pair_name(const std::string& a, const std::string& b);

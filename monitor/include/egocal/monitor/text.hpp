@@ -38,8 +38,8 @@ const Symbols& symbols(Charset charset);
 std::string clean(std::string_view text, std::size_t max = 60);
 /// The same for a name among others that begin alike: cut in the middle, "radar_~ange".
 std::string clean_name(std::string_view name, std::size_t max);
-/// In lines of at most max cells, cut at blanks where there are any; those after the first begin with the
-/// indent.
+/// The text in lines of at most max cells, cut at blanks where there are any; lines after the first begin
+/// with the indent.
 std::vector<std::string> wrapped(std::string_view text, std::size_t max, std::size_t indent);
 /// Where a text is wider than this, its paths lose their folders, from the first one on: what is wrong with a
 /// file is behind its name ("~/pairing.state: cannot be written").
