@@ -101,7 +101,8 @@ GroundPlane plane(const std::string& option, const std::string& text) {
 
 namespace {
 
-/// With less the costs are so small that nothing can be proven of them.
+/// Whether a weight is within the limits. With less the costs are so small that nothing can be proven of
+/// them.
 bool weighs_translation(double weight) {
   constexpr double most = limits::translation_weight.most;
   return weight >= 1 / most && weight <= most;

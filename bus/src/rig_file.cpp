@@ -77,7 +77,7 @@ GoalOptions read_goal(const TomlTable& in, const std::string& key) {
           table->number("translation_m", goal_translation, "m"), std::nullopt};
 }
 
-/// Whether the stride is given: as a number, or as something that is none. "auto" is the default.
+/// Whether a stride is given. "auto" is the default, and counts as none.
 bool gives_stride(const TomlTable& in) {
   return in.has("stride") && !(in.is_text("stride") && in.text("stride") == "auto");
 }

@@ -174,7 +174,7 @@ class UdpTransport final : public Transport {
     if (connect(probe.fd(), reinterpret_cast<const sockaddr*>(&to_), sizeof to_) == 0) send_error_ = 0;
   }
 
-  /// Fetches the datagrams that wait. False: there are none.
+  /// Fetches datagrams that wait. False: there are none.
   bool fetch() {
     std::array<iovec, datagrams_at_once> parts;
     for (std::size_t i = 0; i < datagrams_at_once; ++i) {

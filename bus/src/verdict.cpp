@@ -123,8 +123,7 @@ std::string take_observability(const verdict_t& message, ReceivedVerdict& receiv
   return directions_contradict(message.observable, message.stddev) ? self_contradiction : "";
 }
 
-/// Whether the verdict calls an answer good of which some direction counts as observable, but no motion says
-/// how well it is known.
+/// Whether the verdict is good although of an observable direction no motion says how well it is known.
 bool good_but_unknown(Verdict verdict, const Observability& observability) {
   if (verdict != Verdict::good) return false;
   for (std::size_t i = 0; i < 6; ++i)

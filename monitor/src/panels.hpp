@@ -24,7 +24,7 @@ void draw_events(const Pane& pane, const Model& model, int scroll, int utc_offse
 
 /// stream_panel.cpp: the sensors' streams; all: with what the processes reject, and why.
 void draw_streams(const Pane& pane, const Model& model, int scroll, bool all, Charset charset);
-/// The number of lines about all streams on a screen of this width.
+/// The number of lines that draw_streams() has with `all`, on a screen of this width.
 int stream_line_count(const Model& model, int width);
 
 // detail_panels.cpp

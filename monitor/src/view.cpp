@@ -172,7 +172,8 @@ void draw_keys(const Pane& pane, const ViewState& view) {
   }
 }
 
-/// On the overview only streams with a fault; all streams have a screen of their own.
+/// The number of lines about streams on the overview: none while no stream has a fault. All streams have a
+/// screen of their own.
 int streams_to_say(const Model& model) {
   const auto& lines = model.streams();
   const bool well = std::all_of(lines.begin(), lines.end(), [](const bus::StreamLine& line) {

@@ -46,7 +46,7 @@ class Answers {
   void hear(const scale_problem_t& message);
   void hear(const scale_t& message);
 
-  /// Null: none.
+  /// The answer that counts; null: there is none.
   const Best* best(const PairName& pair) const;
   /// The newest verdict about the session of the answer that counts; null: none.
   const Diagnosis* diagnosis(const PairName& pair) const;
@@ -120,7 +120,8 @@ class Answers {
   std::map<std::string, std::int64_t> refused_;
 };
 
-/// An answer that should not be used: the motions contradict it, or it misses the goal that the rig states.
+/// Whether an answer should not be used: the motions contradict it, or it misses the goal that the rig
+/// states.
 bool unusable(const Diagnosis& diagnosis);
 /// "contradictory: the reason. Cure: ...": verdict, reason, what cures it and how far the goal is, one line.
 std::string verdict_line(const Diagnosis& diagnosis);

@@ -35,7 +35,8 @@ struct ExportOptions {
   bool all = false;
 };
 
-/// More of the drive without a verdict is worth a warning [s]: a pair alone is judged every two seconds.
+/// Where more of the drive than this has no verdict or no answer, a warning is due [s]: a pair alone is
+/// judged every two seconds.
 constexpr double longest_not_judged = 10;
 
 std::string listed(const std::vector<PairName>& pairs) {
@@ -68,8 +69,9 @@ Found recorded(const ExportOptions& options) {
   return found;
 }
 
-/// Solvers send their newest answer, and pairing its problem, again every second. What is certified for a
-/// problem on the bus cannot be outdone but by newer problems; anything less is waited with until the end.
+/// Listens for answers. Solvers send their newest answer, and pairing its problem, again every second. What
+/// is certified for a problem on the bus cannot be outdone but by newer problems; anything less is waited
+/// with until the end.
 Found heard(const ExportOptions& options) {
   const bus::Rig rig = bus::read_rig(options.rig);
   std::vector<PairName> pairs;
@@ -105,14 +107,15 @@ Found heard(const ExportOptions& options) {
   return found;
 }
 
-/// Live an answer counts where its problem is sent: pairing repeats it once a second, and solvers repeat
-/// their answer for hours when pairing hangs or is gone. Of a log it is what it was.
+/// Whether an answer is current. Live it is where its problem is sent: pairing repeats the problem once a
+/// second, and solvers repeat their answer for hours when pairing hangs or is gone. An answer of a log is
+/// always current.
 bool is_current(const PairName& pair, const Answers& answers, bool live) {
   return !live || (answers.best(pair)->checked.standing == bus::Standing::verified &&
                    answers.seconds_not_answered(pair) <= longest_not_judged);
 }
 
-/// What the verdict makes of an answer, and that none does where it is about another one.
+/// Sets what the verdict makes of an answer, and that it makes nothing of it where it is about another one.
 void judge(const PairName& pair, const Answers& answers, NamedExtrinsic& extrinsic) {
   const Diagnosis* const diagnosis = answers.diagnosis(pair);
   if (!diagnosis) return;

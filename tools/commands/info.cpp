@@ -42,7 +42,7 @@ struct Contents {
   std::vector<std::string> notes;
 };
 
-/// As the commands that use the poses do.
+/// Refuses repairs, as the commands that use the poses do.
 void refuse_repairs_of(const std::string& name, const Contents& contents) {
   if (contents.losses.any()) throw error_at(name, 0, "", losses_in_words(contents.losses));
   for (const Row& row : contents.rows)

@@ -56,7 +56,7 @@ nlohmann::ordered_json watch_json(const bus::StreamWatch& watch, std::int64_t no
   return json;
 }
 
-/// Every sensor sends, without a fault; without a rig: anything is received.
+/// Whether every sensor sends, without a fault. Without a rig: whether anything is received.
 bool all_well(const bus::StreamWatch& watch, std::int64_t now_us) {
   if (watch.sensors().empty()) return !watch.others().empty();
   if (watch.misses_any(now_us)) return false;

@@ -96,7 +96,7 @@ struct Channel {
   std::string type;
 };
 
-/// A damaged or hostile log may hold a million.
+/// A limit on memory: a damaged or hostile log may hold a million channels.
 constexpr std::size_t most_channels = 1000;
 
 struct Info {

@@ -25,7 +25,7 @@ namespace egocal::tools {
 
 namespace {
 
-/// As typed.
+/// The options as typed.
 struct SimulateOptions {
   std::string out, rig_out, terrain = "rough", type = "odometry";
   std::vector<std::string> sensors = {"lidar=1.0,0.0,1.8,1,0,0,0", "camera=1.5,0.2,1.5,0.5,-0.5,0.5,-0.5"};

@@ -22,7 +22,7 @@ namespace egocal::tools {
 
 namespace {
 
-/// As typed; empty means not given.
+/// The options as typed; empty means not given.
 struct SolveOptions {
   RequestOptions request;
   RigOptionsTyped rig;

@@ -18,7 +18,7 @@ struct RigOptionsTyped {
 
 void add_rig_options(cli::App command, RigOptionsTyped& options);
 
-/// Whether it is asked for.
+/// Whether a rig is asked for.
 bool is_rig(const RigOptionsTyped& options);
 
 /// What goes with all of `solve`.

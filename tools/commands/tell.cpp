@@ -52,7 +52,7 @@ std::string refusal(const TellOptions& options, const std::string& role) {
          (verbs.empty() ? "no command" : verbs);
 }
 
-/// What is heard of the one that is addressed, and of a diagnosis that may be it.
+/// What is heard of the process that is addressed, and of a diagnosis that may be it.
 struct Heard {
   bool obeys = false;
   std::optional<std::string> ignores{};  ///< the role of one that does not know the verb
@@ -72,8 +72,9 @@ void hear(const status_t& status, const TellOptions& options, Heard& heard) {
     heard.ignores = status.role;
 }
 
-/// It may be a diagnosis that computes, which is silent for as long as it has announced before we listened:
-/// problems are made that one would judge, none was heard, and the name is not that of another program.
+/// Whether the process that is addressed may be a diagnosis that computes, which is silent for as long as it
+/// has announced before we listened: problems are made that one would judge, none was heard, and the name is
+/// not that of another program.
 bool may_compute(const TellOptions& options, const Heard& heard) {
   if (options.to == "*" || !heard.pairing || heard.diagnosis) return false;
   for (const bus::Role other :
@@ -82,8 +83,8 @@ bool may_compute(const TellOptions& options, const Heard& heard) {
   return bus::knows_verb(bus::Role::diagnosis, options.verb);
 }
 
-/// Until that is known. LCM does not report whether a message was received; every process sends a status once
-/// a second, but for one that computes.
+/// Listens until it is known whether the command is obeyed. LCM does not report whether a message was
+/// received; every process sends a status once a second, but for one that computes.
 void listen_for(const TellOptions& options, bus::Loop& loop, Heard& heard) {
   using namespace std::chrono_literals;
   loop.subscribe<status_t>(bus::status_channel, [&](const status_t& status, const bus::Arrival&) {

@@ -46,7 +46,7 @@ void report(const std::string& line) {
   say("egocal up: " + line);
 }
 
-/// The reader of a pipe has gone, or the device takes nothing: throws Error.
+/// Throws Error where the reader of a pipe has gone, or the device takes nothing.
 void require_output() {
   pollfd out{STDOUT_FILENO, POLLOUT, 0};
   if ((poll(&out, 1, 0) == 1 && (out.revents & (POLLERR | POLLNVAL)) != 0) || write(STDOUT_FILENO, "", 0) < 0)
@@ -61,7 +61,8 @@ std::filesystem::path programs_directory() {
   return self.parent_path();
 }
 
-/// One clear line here instead of one from each process, again and again.
+/// Checks where the state is to be kept: one clear line here instead of one from each process, again and
+/// again.
 void check_place_of_state(const std::string& file) {
   const std::filesystem::path target(without_links(file)), folder = target.parent_path();
   std::error_code none;
@@ -99,9 +100,10 @@ void report_left_behind(const std::string& directory) {
                   files.back(), files.size() > 1 ? " and " + counted(files.size() - 1, "other") : ""));
 }
 
-/// One page a pair, from the log and the rig's settings, beside the processes' outputs. What cannot be solved
-/// offline is named; the answer of the processes remains. False: a page says that its answer should not be
-/// used. A page knows all poses, the diagnosis 1200 of the slower stream, so their verdicts may differ.
+/// Writes one page a pair, from the log and the rig's settings, beside the processes' outputs. What cannot be
+/// solved offline is named; the answer of the processes remains. False: a page says that its answer should
+/// not be used. A page knows all poses, the diagnosis 1200 of the slower stream, so their verdicts may
+/// differ.
 bool write_reports(const UpOptions& options, const bus::Rig& rig, const std::string& directory) {
   bool usable = true;
   for (const bus::PairConfig& pair : rig.pairs) {
@@ -119,7 +121,7 @@ bool write_reports(const UpOptions& options, const bus::Rig& rig, const std::str
   return usable;
 }
 
-/// What can be known before any process is started.
+/// Checks what can be known before any process is started.
 void check_before_start(const UpOptions& options, const bus::Rig& rig, const std::string& url) {
   for (const bus::PairConfig& pair : rig.pairs) static_cast<void>(bus::drive_options(rig, pair));
   if (options.follow) require_output();
@@ -132,7 +134,7 @@ void check_before_start(const UpOptions& options, const bus::Rig& rig, const std
   if (!options.state.empty()) check_state(options.state);
 }
 
-/// state: of pairing; empty: it keeps none.
+/// The programs to start. state: the state file of pairing; empty: it keeps none.
 std::vector<Program> programs_of(const UpOptions& options, const std::string& rig, const std::string& state) {
   const std::filesystem::path directory = programs_directory();
   const auto program = [&](const char* name, const std::vector<std::string>& more) {

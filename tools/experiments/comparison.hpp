@@ -25,7 +25,7 @@ struct ComparisonRow {
 /// the time.
 std::vector<ComparisonRow> compare(const DataSet& data, int repeats);
 
-/// As text for people, centimetres and degrees.
+/// The rows as text for people, centimetres and degrees.
 std::string table(const std::vector<ComparisonRow>& rows);
 
 }  // namespace egocal::tools

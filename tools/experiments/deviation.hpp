@@ -14,7 +14,7 @@ struct Deviations {
   std::vector<double> lengths;                       ///< of error - common, run by run
 };
 
-/// Empty without runs.
+/// The deviations of these errors; empty without runs.
 Deviations deviations(const std::vector<Eigen::Vector3d>& errors);
 
 }  // namespace egocal::tools

@@ -124,7 +124,7 @@ Plot error_plot(const std::vector<NoisePoint>& points, const std::string& title,
   return plot;
 }
 
-/// With the noise of the rotations taken off the cost; as it is where that cannot be.
+/// The answer with the noise of the rotations taken off the cost; as it is where that cannot be.
 struct Corrected {
   Eigen::Vector3d translation;
   bool certified = true;

@@ -45,7 +45,7 @@ Exponent exponent(const std::vector<const NoisePoint*>& points,
   return result;
 }
 
-/// In percent, without a negative zero.
+/// The part in percent, without a negative zero.
 double percent(double part) {
   return std::round(1000 * part) / 10 + 0.0;
 }

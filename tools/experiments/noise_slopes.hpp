@@ -28,9 +28,9 @@ struct NoiseSlope {
 };
 std::vector<NoiseSlope> slopes(const std::vector<NoisePoint>& points);
 
-/// As a table in Markdown, one noise level a line.
+/// The slopes as a table in Markdown, one noise level a line.
 std::string markdown(const std::vector<NoiseSlope>& slopes);
-/// As a table in HTML.
+/// The slopes as a table in HTML.
 std::string html(const std::vector<NoiseSlope>& slopes);
 
 }  // namespace egocal::tools

@@ -8,7 +8,7 @@
 
 namespace egocal::tools {
 
-/// In a picture [pt].
+/// A point in a picture [pt].
 struct Point {
   double x = 0, y = 0;
 };
@@ -22,7 +22,7 @@ struct Thinning {
   double column = 0.25;
   /// Any other line keeps what leaves it by more than this: a seventh of a pixel, a tenth of its width [pt].
   double tolerance = 0.1;
-  /// One that is still longer is drawn with twice the tolerance, and again: nothing but scribble is.
+  /// A line that is still longer is drawn with twice the tolerance, and again: nothing but scribble is.
   std::size_t most_points = 20000;
   /// A dot is omitted if other dots cover all of its cells. Width of a cell: a third of a pixel [pt].
   double cell = 0.25;

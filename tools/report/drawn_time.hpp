@@ -24,7 +24,7 @@ class DrawnTime {
   /// origin_us, without a break.
   explicit DrawnTime(const Trajectory& a, std::int64_t origin_us = 0, const DrawnTimeOptions& options = {});
 
-  /// [s]. A time within a break is where the break is.
+  /// The place of a time on the axis [s]. A time within a break is where the break is.
   double seconds(std::int64_t time_us) const;
   /// How many breaks begin before a time: the part of the recording that it belongs to.
   std::size_t part_of(std::int64_t time_us) const;

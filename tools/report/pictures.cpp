@@ -133,7 +133,7 @@ Plot samples_plot(const SamplesOfPage& samples) {
   return plot;
 }
 
-/// Bars, or values that can be drawn at two places along the axis.
+/// Whether a plot shows something: bars, or values that can be drawn at two places along the axis.
 bool shows_something(const Plot& plot) {
   for (const Series& series : plot.series) {
     if (series.style == Series::Style::bars && !series.x.empty()) return true;
@@ -149,7 +149,7 @@ bool shows_something(const Plot& plot) {
   return false;
 }
 
-/// Those that show something, and one line that names the others.
+/// The plots that show something, and one line that names the others.
 std::string figures(const std::vector<Plot>& plots, const char* why) {
   std::string drawn;
   std::vector<std::string> omitted;

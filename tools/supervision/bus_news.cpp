@@ -87,8 +87,8 @@ std::string BusNews::why_nothing() const {
   return "pairing found no motion" + text;
 }
 
-/// Such as a state that cannot be saved, which otherwise only a monitor shows. Errors of solvers and the
-/// player pass by themselves.
+/// Takes an error of pairing or of the diagnosis, such as a state that cannot be saved, which otherwise only
+/// a monitor shows. Errors of solvers and the player pass by themselves.
 void BusNews::hear_error(const status_t& status, std::int64_t now_us) {
   if (status.role != bus::role_name(bus::Role::pairing) &&
       status.role != bus::role_name(bus::Role::diagnosis))
@@ -200,7 +200,7 @@ std::string BusNews::standing(Pair& of, const PairName& pair, std::int64_t now_u
          why + "\n";
 }
 
-/// Empty: that is how it should be, or it is not known.
+/// Why a pair has no new motion; empty: that is how it should be, or it is not known.
 std::string BusNews::why_standing(const Pair& of, const PairName& pair, std::int64_t now_us) const {
   if (pairing_.empty() || pairing_paused_ || of.paused_us) return {};
   const auto silent = [&](const std::string& name) {

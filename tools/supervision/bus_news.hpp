@@ -48,7 +48,7 @@ class BusNews {
   void hear(const status_t& status, std::int64_t now_us);
   void hear(const problem_t& problem, std::int64_t now_us);
   void hear(const command_t& command, std::int64_t now_us);
-  /// A message of a sensor.
+  /// Takes a message of a sensor.
   void hear(const std::string& channel, bus::Bytes bytes, std::int64_t now_us);
 
   /// The lines since the last call, each with its end.

@@ -89,7 +89,7 @@ void terminate(pid_t pid) {
   kill(pid, SIGCONT);
 }
 
-/// A reader that has gone needs nothing more.
+/// Writes a text. A reader that has gone needs nothing more.
 void send(int out, const std::string& text) {
   static_cast<void>(write_all(out, std::as_bytes(std::span(text))));
 }

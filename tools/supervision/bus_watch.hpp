@@ -44,14 +44,14 @@ class BusWatch {
   /// For how long the process may be silent after that status because it computes, see
   /// bus::announced_silence().
   std::chrono::milliseconds announced_silence(pid_t pid) const;
-  /// Asked at a log's end for the first time. Pairs whose newest answer or verdict is not about their last
-  /// motions: those of a drive's end still come. The last ones are known once pairing has sent the same
-  /// problem again after it has acknowledged its last message. All pairs, until the listening process has
-  /// counted since the first question; one that does not count is continued (SIGCONT).
+  /// The number of pairs whose newest answer or verdict is not about their last motions: those of a drive's
+  /// end still come. Asked at a log's end for the first time. The last motions are known once pairing has
+  /// sent the same problem again after it has acknowledged its last message. All pairs, until the listening
+  /// process has counted since the first question; a process that does not count is continued (SIGCONT).
   int awaited() const;
   /// The listening process; -1: none runs.
   pid_t pid() const { return pid_; }
-  /// Readable, without blocking: lines of text, see BusNews.
+  /// A file descriptor of lines of text, see BusNews, that is read without blocking.
   int lines() const { return lines_.get(); }
   /// Starts another listening process where the first one was killed, and returns the new lines(): problems
   /// and answers are sent again each second, so it soon knows what the first one knew. Empty where it cannot
@@ -63,7 +63,7 @@ class BusWatch {
 
  private:
   struct Shared;
-  /// The listening process, until it gets SIGTERM. Then the outcome goes to `out`.
+  /// Runs the listening process until it gets SIGTERM. Then the outcome goes to `out`.
   [[noreturn]] void listen(int out, int lines);
   void start();
   void end();

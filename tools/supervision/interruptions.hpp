@@ -16,9 +16,9 @@ class Interruptions {
   Interruptions(const Interruptions&) = delete;
   Interruptions& operator=(const Interruptions&) = delete;
 
-  /// From now on they wait for the supervisor.
+  /// From now on the signals wait for the supervisor.
   void hold();
-  /// From now on they end this process, as any other one.
+  /// From now on the signals end this process, as any other one.
   void release();
 
  private:

@@ -18,11 +18,12 @@ struct Work {
 
 /// A core that others take is not an end, and a process that turns in circles is none that answers.
 struct LastAnswersOptions {
-  /// In which no process has work and no further answer comes: messages and timers between processes take a
-  /// second.
+  /// Waiting ends after this long without work of any process and without a further answer: messages and
+  /// timers between processes take a second.
   std::chrono::milliseconds stall{5000};
-  /// Without a further answer: of processor time while a process computes, of any while one is held. A
-  /// diagnosis takes a second of a core, which is a minute where children get a sixtieth of it.
+  /// Waiting also ends after this long without a further answer: of processor time while a process computes,
+  /// of any time while one is held. A diagnosis takes a second of a core, which is a minute where children
+  /// get a sixtieth of it.
   std::chrono::milliseconds longest_stall{60'000};
   /// Questions are a tenth of a second apart, and at most this much counts between two of them. A longer
   /// pause means that the supervisor itself had no core, so the processes that answer had none either.
@@ -50,7 +51,7 @@ class LastAnswers {
   bool begun() const { return missing_.has_value(); }
   /// Whether to wait on. missing: answers; more than before are news as well, as new motions were found.
   bool wait_on(int missing, const Work& work, Time now);
-  /// Since the last question, where it is time to say so.
+  /// How long the answers have been waited for, where it is time to say so.
   std::optional<Waited> to_report();
 
  private:

@@ -45,7 +45,7 @@ class Counting {
 /// When the messages of a log were recorded, by sensor.
 class Silences {
  public:
-  /// A damaged time is none of a message.
+  /// Takes the time at which a message was recorded. A damaged time is none.
   void add(const std::string& name, std::int64_t time_us, LogExtent::Stream& stream) {
     if (!plausible_relative_time(time_us)) return;
     if (waiting_ && !is_ahead_of(time_us)) take(*waiting_);
@@ -86,10 +86,10 @@ class Silences {
     last_us = std::max(last_us, time_us);
   }
 
-  /// Between messages of a log, whatever sensor they are of: a longer step is a damaged time.
+  /// Longest step between messages of a log, whatever sensor they are of: a longer one is a damaged time.
   static constexpr std::int64_t longest_us = std::int64_t{24} * 3600 * 1'000'000;
-  /// By which a damaged time is ahead of its neighbours: a clock that is set back in mid-drive is not, as the
-  /// message before the step follows others, and a second less is no silence that is reported.
+  /// A damaged time is ahead of its neighbours by more than this. A clock that is set back in mid-drive is
+  /// not, as the message before the step follows others, and a second less is no silence that is reported.
   static constexpr std::int64_t ahead_us = 1'000'000;
   std::optional<Message> waiting_;  ///< until the next one is known
   std::optional<std::int64_t> begin_us_;

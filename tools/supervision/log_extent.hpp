@@ -16,12 +16,13 @@ namespace egocal::tools {
 /// not grow with its rate.
 class PoseCounts {
  public:
-  /// Times ascend.
+  /// Counts a pose. Times ascend.
   void add(std::int64_t time_us);
   void clear() { *this = {}; }
-  /// After `from_us` and up to `to_us`; wrong by the poses of a tenth of a second at either end.
+  /// The number of poses after `from_us` and up to `to_us`; wrong by the poses of a tenth of a second at
+  /// either end.
   std::int64_t between(std::int64_t from_us, std::int64_t to_us) const;
-  /// Between two poses in the mean, where the stream has no gap [s].
+  /// The mean time between two poses, where the stream has no gap [s].
   double period() const { return steps_ > 0 ? 1e-6 * static_cast<double>(stepped_us_ / steps_) : 0; }
 
  private:

@@ -151,8 +151,8 @@ Hole hole_in(const bus::Rig& rig, const bus::PairConfig& config, const LogExtent
   return {all, into_log(passed.front().utime), into_log(passed.back().utime)};
 }
 
-/// What neither the answer (missing: how much, and why) nor the verdict knows of the end of the drive comes
-/// first.
+/// The judgement of a pair. What neither the answer (missing: how much, and why) nor the verdict knows of the
+/// end of the drive comes first.
 std::string judgement_of(const PairName& pair, const Answers& answers, const std::string& missing) {
   const Diagnosis* const diagnosis = answers.diagnosis(pair);
   const double rest = answers.judged_to_the_end(pair) ? 0 : answers.seconds_not_judged(pair).value_or(0);
@@ -163,7 +163,7 @@ std::string judgement_of(const PairName& pair, const Answers& answers, const std
   return end + (end.empty() ? "" : ". Before: ") + (diagnosis ? verdict_line(*diagnosis) : "not judged");
 }
 
-/// Empty: the answer knows the end of the log.
+/// How much of the log's end is not in the answer, and why; empty: the answer knows the end of the log.
 std::string missing_end(const PairName& pair, const Answers& answers, double unread, double after_clock) {
   if (after_clock > 0)
     return fmt::format(

@@ -16,8 +16,8 @@ namespace egocal::tools {
 /// What was calibrated while somebody watched.
 struct Outcome {
   bool answered = false;  ///< any solver, for any pair
-  /// The answer of some pair should not be used: its motions contradict each other, it misses the goal, it
-  /// lacks the end of the log, or it has moved since the last verdict.
+  /// Whether the answer of some pair should not be used: its motions contradict each other, it misses the
+  /// goal, it lacks the end of the log, or it has moved since the last verdict.
   bool unusable = false;
   /// The verdict, proof and transform of each pair, or that it has no answer. Where a bus was watched and
   /// nothing was answered on it: why, in one line, or empty.
@@ -43,9 +43,9 @@ struct OutcomeOptions {
 /// How far pairing has read each channel, by its acknowledgements [us, the sensor's time].
 using ReadUntil = std::map<std::string, std::int64_t>;
 
-/// At the end of a log. An answer without the log's end is not one of the log, whatever its verdict: it is
-/// unusable. One that begins late or has a hole in its middle is usable, and what is missing is
-/// named, as is damage of the log.
+/// The outcome at the end of a log. An answer without the log's end is not one of the log, whatever its
+/// verdict: it is unusable. An answer that begins late or has a hole in its middle is usable, and what is
+/// missing is named, as is damage of the log.
 Outcome outcome_of(const bus::Rig& rig, const Answers& answers, const LogExtent& extent,
                    const ReadUntil& read_until, const OutcomeOptions& options = {});
 

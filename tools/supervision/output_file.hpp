@@ -11,12 +11,12 @@ namespace egocal::tools {
 /// Throws Error where that one is not private.
 std::string default_output_directory();
 
-/// Made where it is not there. Throws Error where it is not a folder that nobody but this user can write to:
-/// in a folder of all users, such as /tmp, it may be somebody else's.
+/// Makes the folder where it is not there. Throws Error where it is not a folder that nobody but this user
+/// can write to: in a folder of all users, such as /tmp, it may be somebody else's.
 void require_private_folder(const std::string& folder);
 
-/// Opens it for appending, with a line that says when; one of more than 10 MB becomes FILE.old first. The
-/// file descriptor is closed in programs that are executed. Throws Error.
+/// Opens a file for appending, with a line that says when; a file of more than 10 MB becomes FILE.old first.
+/// The file descriptor is closed in programs that are executed. Throws Error.
 int open_output(const std::string& file);
 
 /// The last line of a file that is not empty, without control characters, at most 200 bytes; empty: none.

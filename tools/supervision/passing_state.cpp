@@ -25,7 +25,8 @@ constexpr const char* prefix = "pairing-";
 constexpr const char* suffix = ".state";
 constexpr const char* owner_suffix = ".owner";
 
-/// -1: a process owns it, or it cannot be opened.
+/// Takes the lock by which a process owns a state file, and returns its descriptor; -1: a process owns the
+/// file, or the lock cannot be opened.
 int owned(const std::string& file) {
   const int fd = open((file + owner_suffix).c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
   if (fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) == 0) return fd;
@@ -35,7 +36,7 @@ int owned(const std::string& file) {
   return -1;
 }
 
-/// Something that no process can use as its state or its lock.
+/// Whether something is there that no process can use as its state or its lock.
 bool is_in_the_way(const std::string& file) {
   std::error_code none;
   const fs::file_type type = fs::status(file, none).type();

@@ -24,7 +24,7 @@ class ProgramFiles {
   /// The command line, without its state file where the folder is gone and cannot be made: a process that
   /// cannot lock its state does not begin, and the drive goes on.
   std::vector<std::string> command_of(const Program& program, bool has_started);
-  /// Where the folder is not empty.
+  /// The output file of a program, where the folder's name is not empty.
   std::string output_file(const Program& program) const { return folder_ + "/" + program.name + ".out"; }
   /// The last line that a program wrote; empty: not known.
   std::string last_line_of(const Program& program) const;

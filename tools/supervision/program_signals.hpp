@@ -19,9 +19,9 @@ class ProgramSignals {
   ProgramSignals(const ProgramSignals&) = delete;
   ProgramSignals& operator=(const ProgramSignals&) = delete;
 
-  /// Readable while a signal waits.
+  /// A file descriptor that is readable while a signal waits.
   int descriptor() const { return descriptor_; }
-  /// Empty: none waits.
+  /// The next signal; empty: none waits.
   std::optional<signalfd_siginfo> next();
   /// What the programs have blocked: as the caller, who may hold signals back for us.
   const sigset_t& mask_of_programs() const { return programs_mask_; }

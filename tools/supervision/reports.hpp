@@ -11,7 +11,7 @@ namespace egocal::tools {
 /// the screen in the end.
 class Reports {
  public:
-  /// quiet: to up.out in this folder; an empty folder is none, and all goes to standard error.
+  /// quiet: lines go to up.out in this folder; an empty folder is none, and all goes to standard error.
   Reports(std::string folder, bool quiet) : folder_(std::move(folder)), quiet_(quiet) {}
   ~Reports();
   Reports(const Reports&) = delete;

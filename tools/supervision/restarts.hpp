@@ -41,7 +41,7 @@ class Restarts {
 
   /// exit_code: negative where a signal killed it. lived: since its start.
   Next ended(const Program& program, int exit_code, std::chrono::milliseconds lived);
-  /// It could not be started for the moment.
+  /// The process could not be started for the moment.
   void not_started() { pause_after(std::chrono::milliseconds{0}); }
   std::chrono::milliseconds pause() const { return pause_; }
   bool pauses_longest() const { return pause_ == options_.longest_back_off; }

@@ -10,7 +10,7 @@ namespace egocal::tools {
 
 namespace {
 
-/// In the child, between fork and exec: only what is safe there.
+/// Becomes the program. Runs in the child, between fork and exec: only what is safe there.
 [[noreturn]] void become(const Program& program, char* const* arguments, int output, pid_t parent,
                          const sigset_t& mask) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);  // whatever happens to us, nothing is left behind

@@ -29,7 +29,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// Between two questions for what is still awaited: people do not see it, and it costs nothing.
+/// The time between two questions for what is still awaited: people do not see it, and it costs nothing.
 constexpr milliseconds look_again{100};
 /// Two turns of the supervisor are no farther apart, unless it was stopped.
 constexpr milliseconds longest_turn{2000};
@@ -143,7 +143,8 @@ class Supervisor {
     }
   }
 
-  /// One that is stopped meanwhile, or waits for something, hangs as others do.
+  /// Whether a silent process computes as it has announced. A process that is stopped meanwhile, or waits for
+  /// something, hangs as others do.
   bool computes_as_announced(const Child& child, milliseconds silent, milliseconds announced) const {
     if (silent < options_.silence.silent || silent > announced) return false;
     const Activity doing = activity(child.pid);
@@ -158,7 +159,7 @@ class Supervisor {
     return work;
   }
 
-  /// After a log's end.
+  /// Whether to wait on for answers after a log's end.
   bool waits_for_answers(Clock::time_point now) {
     const int awaited = options_.awaited && !wanted_at_once_ ? options_.awaited() : 0;
     if (awaited > 0 && !last_answers_.begun())
@@ -189,7 +190,7 @@ class Supervisor {
     }
   }
 
-  /// Until a signal comes or something is to be done by the clock.
+  /// Waits until a signal comes or something is to be done by the clock.
   void wait() {
     Clock::time_point until = awake() + std::chrono::seconds(1);
     if (ending_) {
@@ -224,7 +225,7 @@ class Supervisor {
                             "not answered is reported any more");
   }
 
-  /// Ctrl-Z, or SIGTSTP from somebody.
+  /// Stops this process, after Ctrl-Z, or SIGTSTP from somebody.
   void suspend(bool by_key) {
     std::vector<pid_t> foreground;
     for (const Child& child : children_)
@@ -232,8 +233,8 @@ class Supervisor {
     stop_until_continued(foreground, by_key);
   }
 
-  /// Our own programs only: who has forked another child (BusWatch) still has its pid, which must stay that
-  /// child's until it asks for its end.
+  /// Notes which programs have ended. Our own programs only: who has forked another child (BusWatch) still
+  /// has its pid, which must stay that child's until it asks for its end.
   void reap() {
     for (Child& child : children_) {
       int status = 0;
@@ -270,7 +271,7 @@ class Supervisor {
     }
   }
 
-  /// After the pause that was decided.
+  /// Lets a program start again after the pause that was decided.
   void start_again(Child& child, const std::string& reason) {
     const Clock::time_point now = awake();
     child.start_at = now + child.restarts.pause();
@@ -283,7 +284,7 @@ class Supervisor {
                                 child.restarts.pause().count()));
   }
 
-  /// How it ended, and its last line of output, unless somebody killed it, whatever it had said.
+  /// How a program ended, and its last line of output, unless somebody killed it, whatever it had said.
   std::string reason(const Child& child, int status) const {
     const bool killed = WIFSIGNALED(status) && (WTERMSIG(status) == SIGKILL || WTERMSIG(status) == SIGTERM);
     const std::string said = killed ? "" : files_.last_line_of(child.program);

@@ -11,7 +11,7 @@ namespace egocal::tools {
 class TerminalModes {
  public:
   TerminalModes() { known_ = tcgetattr(STDIN_FILENO, &modes_) == 0; }
-  /// Not of a terminal that is another job's now.
+  /// Restores the modes, but not of a terminal that is another job's now.
   void restore() const {
     if (known_ && tcgetpgrp(STDIN_FILENO) == getpgrp()) tcsetattr(STDIN_FILENO, TCSADRAIN, &modes_);
   }

@@ -12,8 +12,8 @@ namespace egocal::tools {
 
 namespace {
 
-/// The one that the verdict is about, otherwise the most important certain one. Of a contradictory drive it
-/// may be open which reading is right, not that the drive is wrong.
+/// The finding that the verdict is about, otherwise the most important certain one. Of a contradictory drive
+/// it may be open which reading is right, not that the drive is wrong.
 const Finding* main_fault(const Calibration& alone) {
   const Finding* first = nullptr;
   for (const Finding& finding : alone.findings) {

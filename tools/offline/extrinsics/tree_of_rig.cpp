@@ -13,7 +13,8 @@ namespace egocal::tools {
 
 namespace {
 
-/// Like the pair, which agrees with it, and not good where it may be off by more than is tolerated.
+/// Judges an edge of the joint answer like its pair, which agrees with it, and as not good where it may be
+/// off by more than is tolerated.
 void judge_joint(const Calibration& pair, NamedExtrinsic& edge) {
   if (pair.verdict != Verdict::good) return;
   constexpr double confidence = 1.96;  // mathematics: 95 % of a normal distribution

@@ -47,7 +47,7 @@ Calibration calibrate_motions(const MotionSource& source, const Motions& motions
   }
 }
 
-/// Where the scale that was estimated changes along the drive: one extrinsic for all of its segments.
+/// Finds one extrinsic for all segments of the drive, where the scale that was estimated changes along it.
 void follow_scale(Motions& motions, CalibrationOptions options, SolveResult& result) {
   Calibration& calibration = result.calibration;
   if (!calibration.scale || motions.a.empty()) return;
@@ -70,7 +70,7 @@ void follow_scale(Motions& motions, CalibrationOptions options, SolveResult& res
   result.course = course;
 }
 
-/// Cures as the user gives them; where a time is in which of several drives.
+/// Words cures as the user gives them, and says where a time is in which of several drives.
 void word_for_user(const Drives& drives, const Terms& terms, Calibration& calibration) {
   for (Finding& finding : calibration.findings) {
     finding.remedy = remedy_in_terms(finding, terms);

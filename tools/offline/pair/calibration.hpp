@@ -38,7 +38,8 @@ struct SolveRequest {
   std::optional<SamplesRequest> samples;  ///< the files hold still poses, not streams
   bool keep_motions = false;              ///< hand back what was solved, for a report
   std::string scale_option;               ///< as it was typed: "--scale" names no side; empty: not given
-  /// Before options of `egocal solve` in what is said to the user; empty: they are options of this command.
+  /// What is put before options of `egocal solve` in messages to the user; empty: they are options of this
+  /// command.
   std::string solve;
   /// Called with the warnings where there is no answer that could hold them: they may say why.
   std::function<void(const std::vector<std::string>&)> unanswered;
@@ -72,8 +73,8 @@ struct SolveResult {
       fit_pairs;  ///< of motions as long as those that the fit is stated of; none rejected
 };
 
-/// From the source to the answer. Throws Error where nothing can be read or paired, UsageError where options
-/// contradict each other.
+/// Calibrates, from the source to the answer. Throws Error where nothing can be read or paired, UsageError
+/// where options contradict each other.
 SolveResult calibrate_offline(const SolveRequest& request);
 
 }  // namespace egocal::tools

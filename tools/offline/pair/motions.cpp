@@ -19,7 +19,8 @@ namespace egocal::tools {
 
 namespace {
 
-/// A file that can be read beside another one, and is long enough to be worth a thread. Two pipes may be one.
+/// Whether a file can be read beside another one, and is long enough to be worth a thread. Two pipes may be
+/// one.
 bool is_long_file(const std::string& name) {
   constexpr std::uintmax_t least = 1 << 20;  // [bytes], read in some milliseconds
   std::error_code none;
@@ -27,7 +28,7 @@ bool is_long_file(const std::string& name) {
   return std::filesystem::is_regular_file(file, none) && std::filesystem::file_size(file, none) >= least;
 }
 
-/// A file of times was given for both.
+/// Whether one file of times was given for both streams.
 bool has_common_times(const MotionSource& source) {
   return !source.reading_a.times_file.empty() && source.reading_a.times_file == source.reading_b.times_file;
 }

@@ -62,7 +62,7 @@ void word_inverted_both(Finding& finding, const Inverted& given) {
   say(finding, std::move(words));
 }
 
-/// An option exchanges the columns of quaternions that were right: the two orders undo each other.
+/// Whether an option exchanges the columns of quaternions that were right: the two orders undo each other.
 bool undone_by(const Finding& finding, QuaternionOrder given) {
   const bool to_xyzw = finding.words.cure.find("xyzw") != std::string::npos;
   return given == (to_xyzw ? QuaternionOrder::wxyz : QuaternionOrder::xyzw);
@@ -89,7 +89,7 @@ void word_quaternion_order_both(Finding& finding, QuaternionOrder of_a, Quaterni
   say(finding, std::move(words));
 }
 
-/// The factor was given: another one takes its place.
+/// Words the cure of a wrong scale where the factor was given: another one takes its place.
 void word_scale(Finding& finding, const CalibrationOptions& options, const std::string& option) {
   if (!finding.value || !(*finding.value > 0)) return;
   const bool of_a = options.scale_side == Side::a;
@@ -112,7 +112,7 @@ void reword(Calibration& calibration, const Word& word) {
   }
 }
 
-/// The factor was looked for, and lies beyond what was searched.
+/// Words the cure of a wrong scale where the factor was looked for, and lies beyond what was searched.
 void word_scale_beyond_range(Finding& finding, const CalibrationOptions& options, const std::string& option,
                              double searched) {
   if (!finding.value || !(*finding.value > 0)) return;

@@ -19,7 +19,8 @@ Pose with_positive_scalar(Pose T);
 
 /// One JSON object (docs/json.md); numbers that are not finite are null when it is printed.
 nlohmann::ordered_json report_json(const SolveResult& result, const std::optional<Pose>& truth);
-/// For people: degrees and centimetres, both directions of T, fit and optimality and uncertainty kept apart.
+/// The result for people: degrees and centimetres, both directions of T, fit and optimality and uncertainty
+/// kept apart.
 std::string report_text(const SolveResult& result, const std::optional<Pose>& truth);
 
 }  // namespace egocal::tools

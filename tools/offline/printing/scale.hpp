@@ -12,7 +12,7 @@ namespace egocal::tools {
 /// The scale that was found or given, and how it changes along the drive. The JSON needs a scale that was
 /// found.
 nlohmann::ordered_json scale_json(const SolveResult& result);
-/// Empty where lengths are as they were read.
+/// The scale for people; empty where lengths are as they were read.
 std::string scale_text(const SolveResult& result);
 
 }  // namespace egocal::tools

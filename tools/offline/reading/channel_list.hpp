@@ -12,7 +12,7 @@ namespace egocal::tools {
 class ChannelList {
  public:
   void add(const std::string& name);
-  /// At most ten, "none" where there are none.
+  /// At most ten of the names; "none" where there are none.
   std::string text() const;
 
  private:

@@ -21,8 +21,8 @@ struct LcmPose {
   bool unstamped = false;        ///< its sender filled in no time: that of recording is taken
 };
 
-/// Any of the types that hold a pose, recognised by their fingerprints; a message of another type, or with
-/// values that are no pose, is refused. recorded_us: for a message whose time is zero; 0: it is refused.
+/// Decodes any of the types that hold a pose, recognised by their fingerprints. A message of another type, or
+/// with values that are no pose, is refused. recorded_us: for a message whose time is zero; 0: it is refused.
 LcmPose decode_lcm_pose(bus::Bytes bytes, std::int64_t recorded_us = 0);
 
 /// Which time counts in one channel: that of recording only where no message has another.

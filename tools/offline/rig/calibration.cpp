@@ -25,7 +25,7 @@ namespace egocal::tools {
 
 namespace {
 
-/// The sensors' first drive.
+/// Reads the sensors' first drive.
 std::vector<Trajectory> read(const RigRequest& request, const RigSettings& settings, RigReport& report) {
   std::vector<Trajectory> trajectories;
   std::string damage;  // of the log, whichever channel is read
@@ -44,7 +44,7 @@ std::vector<Trajectory> read(const RigRequest& request, const RigSettings& setti
   return trajectories;
 }
 
-/// Further drives, each after the ones before it.
+/// Appends further drives, each after the ones before it.
 Drives append_drives(const RigRequest& request, const RigSettings& settings,
                      std::vector<Trajectory>& trajectories, RigReport& report) {
   if (request.append.size() % trajectories.size() != 0)
@@ -65,7 +65,7 @@ Drives append_drives(const RigRequest& request, const RigSettings& settings,
   return drives;
 }
 
-/// Which of the offsets is right is open, and so is the answer.
+/// Adds the finding that two offsets fit: which of them is right is open, and so is the answer.
 void put_rival_offset(const ClockOfSensor& clock, const std::string& name, Calibration& calibration) {
   if (clock.period == 0) return;
   Finding finding;
@@ -79,7 +79,7 @@ void put_rival_offset(const ClockOfSensor& clock, const std::string& name, Calib
   calibration.findings.push_back(std::move(finding));
 }
 
-/// A sensor that does not work: each pose is the first one.
+/// Whether a sensor does not work: each pose is the first one.
 bool is_still(const Trajectory& poses) {
   return std::all_of(poses.begin(), poses.end(), [&](const StampedPose& one) {
     return one.pose.real == poses.front().pose.real && one.pose.dual == poses.front().pose.dual;
@@ -161,8 +161,8 @@ std::string without_answer(const RigReport& report, const UnsolvedPair& pair) {
   return report.names[pair.a] + ", " + report.names[pair.b] + ": " + pair.reason;
 }
 
-/// Those outside of the largest group that the answers connect; of two that are as large the first one
-/// counts.
+/// The sensors outside of the largest group that the answers connect; of two groups that are as large the
+/// first one counts.
 std::vector<std::size_t> sensors_apart(const RigReport& report) {
   const std::size_t n = report.names.size();
   std::vector<std::size_t> group(n), size(n, 0), apart;

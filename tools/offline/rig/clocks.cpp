@@ -37,7 +37,8 @@ void put(std::size_t sensor, double offset, std::vector<Trajectory>& trajectorie
   clocks.known[sensor] = true;
 }
 
-/// By the motion, on the clock of one that is known. False: it cannot be found from this one.
+/// Finds the offset of a sensor by its motion, on the clock of a sensor that is known. False: it cannot be
+/// found from that one.
 bool find(std::size_t known, std::size_t sensor, double max_gap, std::vector<Trajectory>& trajectories,
           Clocks& clocks) {
   const auto offset = estimate_time_offset(trajectories[known], trajectories[sensor], {.max_gap = max_gap});
@@ -51,7 +52,8 @@ bool find(std::size_t known, std::size_t sensor, double max_gap, std::vector<Tra
   return true;
 }
 
-/// Along pairs whose offset is a number. False where there is none of a known and an unknown sensor.
+/// Puts one more sensor on the common clock, along a pair whose offset is a number. False where there is no
+/// such pair of a known and an unknown sensor.
 bool put_by_numbers(const RigSettings& settings, std::vector<Trajectory>& trajectories, Clocks& clocks) {
   for (const RigPairSettings& pair : settings.pairs) {
     if (!pair.listed || !pair.time_offset || clocks.known[pair.a] == clocks.known[pair.b]) continue;
@@ -66,7 +68,7 @@ bool put_by_numbers(const RigSettings& settings, std::vector<Trajectory>& trajec
   return false;
 }
 
-/// The same, found.
+/// The same along a pair whose offset is found by the motion.
 bool put_by_motion(const RigSettings& settings, std::vector<Trajectory>& trajectories, Clocks& clocks) {
   for (const RigPairSettings& pair : settings.pairs) {
     if (!pair.listed || pair.time_offset || clocks.known[pair.a] == clocks.known[pair.b]) continue;

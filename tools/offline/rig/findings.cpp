@@ -83,12 +83,14 @@ std::map<std::string, PairFindings> findings_by_code(const RigReport& report, bo
   return result;
 }
 
-/// Right streams (docs/findings.md). They say how well an answer is known, not that a sensor is wrong.
+/// Whether the streams are right in spite of findings of this code (docs/findings.md). They say how well an
+/// answer is known, not that a sensor is wrong.
 bool leaves_the_answer_right(const std::string& code) {
   return code == "undersampled" || code == "frozen" || code == "too_little_motion";
 }
 
-/// Held values leave most answers right: whether they are why the pair is doubtful, or nothing else is.
+/// Whether a finding of held values is why the pair is doubtful, or nothing else is. They leave most answers
+/// right.
 bool is_the_reason(const Calibration& pair, const Finding& finding) {
   return pair.reason == finding.message ||
          std::none_of(pair.findings.begin(), pair.findings.end(), [&pair](const Finding& other) {
@@ -96,7 +98,7 @@ bool is_the_reason(const Calibration& pair, const Finding& finding) {
          });
 }
 
-/// Whether a pair that shows it should not be used as it is.
+/// Whether a pair that shows this finding should not be used as it is.
 bool makes_bad(const RigReport& report, const PairFinding& found) {
   const Calibration& pair = report.pairs[found.pair];
   std::string code = found.finding->code;
@@ -105,12 +107,13 @@ bool makes_bad(const RigReport& report, const PairFinding& found) {
          (code != "held" || is_the_reason(pair, *found.finding));
 }
 
-/// A wrong nominal value is a fault of what was given for the pair: no sensor has it, whatever pairs show it.
+/// Whether findings of this code are of the pair. A wrong nominal value is a fault of what was given for the
+/// pair: no sensor has it, whatever pairs show it.
 bool is_of_the_pair(const std::string& code) {
   return code == "nominal";
 }
 
-/// Whether it is of this sensor, or may be.
+/// Whether a finding is of this sensor, or may be.
 bool may_be_of(const RigReport& report, const PairFinding& found, std::size_t sensor) {
   const RigPairAnswer& answer = report.solution.pairs[found.pair];
   return found.sensor ? *found.sensor == sensor : answer.a == sensor || answer.b == sensor;
@@ -197,7 +200,7 @@ RigFinding moved_by_pairs(const RigReport& report, const PairFindings& of_move, 
 /// A mount that was moved between two drives: which pairs of them show it.
 using ShownByPairs = std::vector<const MountsOfPair*>;
 
-/// Moved by most of those.
+/// The pair that shows the largest move of those.
 const MountsOfPair& largest_of(const ShownByPairs& shown) {
   return **std::max_element(shown.begin(), shown.end(),
                             [](const MountsOfPair* one, const MountsOfPair* other) {

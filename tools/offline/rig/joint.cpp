@@ -20,8 +20,8 @@ constexpr double longer_than_common = 1.25;
 /// The joint answer takes the place of the pairs' where it states at most this many times what they do: it
 /// knows no errors in variables (docs/method.md), and has only instants that all sensors share.
 constexpr double most_spread = 1.5;
-/// And where both agree, in every direction, to this many standard deviations and what loops may be open by
-/// (RigOptions::least_rotation).
+/// The joint answer takes that place only where both agree, in every direction, to this many standard
+/// deviations and what loops may be open by (RigOptions::least_rotation).
 constexpr double agreeing_sigmas = 3;
 
 /// The time from the begin to the end of what all these sensors recorded [s]; below 0: they share none.
@@ -120,7 +120,8 @@ void judge_loops(const std::vector<Trajectory>& trajectories, const RigMotionsOp
       }
 }
 
-/// Whether a joint pose states much more than the pair does, or contradicts it; otherwise empty.
+/// Why the joint pose does not take the place of a pair's: it states much more than the pair does, or
+/// contradicts it. Empty: neither.
 std::string why_not(const RigReport& report, std::size_t pair) {
   const ConsistentSet& set = report.solution.set;
   const std::size_t sensor = report.solution.pairs[pair].b;
