@@ -62,7 +62,7 @@ std::string fault_of(const Eigen::Vector3d& position, const Eigen::Vector4d& qua
   return "";
 }
 
-/// Sorted by time, the first of equal times kept.
+/// The trajectory sorted by time, the first of equal times kept.
 Trajectory in_order(Trajectory trajectory, const char* name, std::vector<std::string>& notes) {
   TrajectoryReading reading;
   reading.trajectory = std::move(trajectory);

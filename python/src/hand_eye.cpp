@@ -54,7 +54,7 @@ void require_rotation_vector(const Eigen::Vector3d& axis, const char* list, std:
                         ": expected a rotation vector of finite numbers, less than 1e6 rad long");
 }
 
-/// What the tuple of R and t does not tell.
+/// Warns of what the tuple of R and t does not tell: poses that contradict the others.
 void warn_of_wrong(const std::vector<std::size_t>& wrong, std::size_t poses) {
   if (wrong.empty()) return;
   std::string numbers;

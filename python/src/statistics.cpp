@@ -23,7 +23,8 @@ void require_weight(double weight, const char* name) {
     throw py::value_error(std::string(name) + ": expected a finite number, 0 or more");
 }
 
-/// What a cost matrix always is; without it there is no minimum to be found.
+/// The matrix of an object, which must be finite and symmetric as a cost matrix always is; without that there
+/// is no minimum to be found.
 Matrix8d to_cost_matrix(const py::object& object) {
   const Matrix8d Q = to_matrix8(object, "Q");
   constexpr double rounding = 1e-9;  // of sums in another order
@@ -33,7 +34,7 @@ Matrix8d to_cost_matrix(const py::object& object) {
   return Q;
 }
 
-/// An identity that nothing was found for looks like an answer.
+/// Warns where no answer was found: an identity that nothing was found for looks like an answer.
 void warn_of_status(SolverStatus status, const Matrix8d& Q) {
   if (status == SolverStatus::iteration_limit)
     warn("solve_dual: not converged: the best point that was found; verify() tells what it is worth");

@@ -39,7 +39,7 @@ struct DiagnosedPair {
   void restore(DriveSample saved_sample, FollowedClock saved_clock, PairMemory saved);
   PairMemory memory() const;
 
-  /// Whether a new problem, or poses alone, are to be judged. early: only if nothing more comes, and the
+  /// Whether a new problem, or poses alone, are to be judged. early: only if nothing more comes, so that the
   /// judgement need not wait.
   bool to_be_judged(std::int64_t mono_us, bool early, const DiagnosingOptions& options) const;
   /// Whether the newest answer is far from the judged one (DiagnosingOptions::far_from_judged). True at most

@@ -18,7 +18,7 @@ class ListeningClock {
   std::int64_t now_us(std::int64_t mono_us) const;
   /// read_all: nothing waits in the socket. True: the process was stopped since the last look.
   bool look(std::int64_t mono_us, bool read_all);
-  /// What came while this process was stopped is still to be read.
+  /// Whether what came while this process was stopped is still to be read.
   bool catching_up() const { return catching_up_; }
 
  private:

@@ -43,11 +43,13 @@ class StateFile {
   /// If the disk does not allow that now, the next snapshot does it first.
   void refuse(const std::string& why);
 
-  /// Throws Error if the disk refuses it; the old content is then still there.
+  /// Replaces the file by a snapshot. Throws Error if the disk refuses it; the old content is then still
+  /// there.
   void snapshot(std::span<const std::byte> bytes);
-  /// Throws Error likewise. Only after a snapshot.
+  /// Adds to the snapshot, which must be there. Throws Error likewise.
   void add(std::span<const std::byte> bytes);
-  /// False: the file was removed while it was in use, and only a snapshot restores it.
+  /// Whether the file is in place. False: it was removed while it was in use, and only a snapshot restores
+  /// it.
   bool in_place() const { return medium_->in_place(); }
   /// Bytes added since the snapshot.
   std::uint64_t added() const { return added_; }

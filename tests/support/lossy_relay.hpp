@@ -61,7 +61,7 @@ class LossyRelay {
     }
     if (now_due) pass(channel, *now_due);
   }
-  /// What is kept for later goes out now.
+  /// Sends what was kept for later.
   void flush() {
     for (auto& [channel, waiting] : waiting_)
       if (waiting) pass(channel, *std::exchange(waiting, std::nullopt));

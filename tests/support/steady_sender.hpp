@@ -25,7 +25,7 @@ class SteadySender {
     heartbeat_.publish();
   }
 
-  /// Pairing is alive, and one more message may be in flight.
+  /// Whether pairing is alive, and one more message may be in flight.
   bool ready() const { return in_flight_.heard() && in_flight_.count() < most_in_flight; }
   bool all_taken() const { return in_flight_.count() == 0; }
   std::size_t on_the_way() const { return in_flight_.count(); }

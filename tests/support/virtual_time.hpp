@@ -22,7 +22,7 @@ class VirtualClock final : public bus::Clock {
 
   void advance(std::chrono::nanoseconds time) { mono_ns_ += time.count(); }
   void set_to(std::int64_t mono_ns) { mono_ns_ = mono_ns; }
-  /// The date is set.
+  /// Sets the date on by this time [us].
   void step_wall(std::int64_t us) { wall_step_us_ += us; }
 
  private:

@@ -179,7 +179,7 @@ bool Answers::judged_to_the_end(const PairName& pair) const {
   const Judgement* const known = judgement(pair);
   const auto newest = newest_.find(pair);
   if (!known || newest == newest_.end()) return known != nullptr;
-  // on a busy machine it may have the newest problem before the poses that this was made of
+  // on a busy machine the diagnosis may have the newest problem before the poses that the problem was made of
   const bool by_old_poses =
       known->judged.poses > 0 && newest->second.utime - known->judged.end_us > judged_again_us;
   return known->session == newest->second.session && known->seq >= newest->second.seq && !by_old_poses;

@@ -65,7 +65,7 @@ class BusNews {
     bool unanswered_reported = false;
     std::optional<std::pair<std::int64_t, std::int64_t>> newest;  ///< session and number of a problem,
     std::int64_t problem_us = 0;                                  ///< when one came
-    /// When a new one came, or could come first: pairing was paused or silent until then.
+    /// When a new problem came, or could come first: pairing was paused or silent until then.
     std::int64_t motion_us = 0;
     std::optional<std::int64_t> paused_us;
     bool standing_reported = false;

@@ -12,8 +12,8 @@
 
 namespace egocal::tools {
 
-/// Pairing sends its newest problem of a pair again each second. One that comes again unchanged has nothing
-/// behind it of what pairing had read before it sent that.
+/// Pairing sends its newest problem of a pair again each second. A problem that comes again unchanged is the
+/// last one of all that pairing had read before it sent the problem again.
 class LastMotions {
  public:
   void hear(const problem_t& problem);

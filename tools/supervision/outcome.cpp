@@ -55,9 +55,10 @@ struct Begin {
   bool clock_went_back = false;
 };
 
-/// The log's begin before the answer's session, which begins with a pose of either sensor, in that one's
-/// time; of clocks that differ the nearer one is it. A session that began since a clock went back has a
-/// number that is no time, as these only grow: all of the log before is missing, at least.
+/// The part of the log before the answer's session. The session begins with a pose of either sensor, and its
+/// number is the time of that pose; where the clocks of the sensors differ, the nearer one counts. A session
+/// that began since a clock went back has a number that is no time, as numbers of sessions only grow: then
+/// all of the log before is missing, at least.
 Begin not_in_session(const PairName& pair, const LogExtent& extent, std::int64_t session,
                      const OutcomeOptions& options) {
   std::optional<double> least;

@@ -11,7 +11,7 @@ namespace egocal::tools {
 struct SilenceOptions {
   std::chrono::milliseconds silent{5000};   ///< after which it is reported and continued (SIGCONT)
   std::chrono::milliseconds hangs{20'000};  ///< after which it is killed
-  /// Another one is heard: within this time, in which each of them sends two statuses.
+  /// Another process counts as heard within this time, in which each process sends two statuses.
   std::chrono::milliseconds heard{2500};
 };
 

@@ -83,7 +83,7 @@ MountsDiffer worded(const Drives& drives, MountsDiffer differ) {
   return differ;
 }
 
-/// Each drive that is usable by itself against the one before it that is.
+/// Compares each drive that is usable by itself with the usable one before it.
 std::vector<MountsDiffer> compared(const Drives& drives, const std::vector<std::optional<Calibration>>& alone,
                                    bool metres, const MountsOfDrivesOptions& mounts) {
   std::vector<MountsDiffer> found;

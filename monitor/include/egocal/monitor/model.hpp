@@ -162,7 +162,7 @@ struct PairState {
   std::int64_t idle_mono_us = 0;  ///< when last there was nothing to solve
   std::optional<Interruption> interruption;
   std::optional<std::int64_t> reset_asked;  ///< the session that a command asked to forget
-  /// The monitor has no network, or nothing of pairing has come since: the silence is not pairing's.
+  /// Whether the monitor has no network, or nothing of pairing has come since: the silence is not pairing's.
   bool no_network = false;
   bool ended = false;         ///< every pairing process that was heard has reported its end
   bool pairing_runs = false;  ///< one of them is alive
