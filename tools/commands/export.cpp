@@ -37,7 +37,7 @@ struct ExportOptions {
 
 /// Where more of the drive than this has no verdict or no answer, a warning is due [s]: a pair alone is
 /// judged every two seconds.
-constexpr double longest_not_judged = 10;
+constexpr double longest_behind = 10;
 
 std::string listed(const std::vector<PairName>& pairs) {
   std::string all;
@@ -112,7 +112,7 @@ Found heard(const ExportOptions& options) {
 /// always current.
 bool is_current(const PairName& pair, const Answers& answers, bool live) {
   return !live || (answers.best(pair)->checked.standing == bus::Standing::verified &&
-                   answers.seconds_not_answered(pair) <= longest_not_judged);
+                   answers.seconds_not_answered(pair) <= longest_behind);
 }
 
 /// Sets what the verdict makes of an answer, and that it makes nothing of it where it is about another one.
@@ -148,10 +148,10 @@ NamedExtrinsic named(const PairName& pair, const Found& found, bool live) {
     say(fmt::format(
         "egocal: warning: {}: the scale of this answer could not be verified: it was not received",
         text(pair)));
-  if (const double rest = answers.seconds_not_answered(pair); rest > longest_not_judged)
+  if (const double rest = answers.seconds_not_answered(pair); rest > longest_behind)
     say(fmt::format("egocal: warning: {}: the last {:.0f} s of the drive are not in this answer", text(pair),
                     rest));
-  if (const double rest = answers.seconds_not_judged(pair).value_or(0); rest > longest_not_judged)
+  if (const double rest = answers.seconds_not_judged(pair).value_or(0); rest > longest_behind)
     say(fmt::format("egocal: warning: {}: the last {:.0f} s of the drive are not judged", text(pair), rest));
   NamedExtrinsic extrinsic{pair.first,
                            pair.second,
