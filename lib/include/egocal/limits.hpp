@@ -12,7 +12,7 @@ namespace egocal {
 /// A closed range of an option or a value.
 struct Range {
   double least = 0, most = 0;
-  /// False for NaN, too.
+  /// Whether the range holds the value; false for NaN, too.
   constexpr bool contains(double value) const { return value >= least && value <= most; }
 };
 
@@ -23,7 +23,8 @@ namespace limits {
 inline constexpr std::int64_t earliest_us = 0;
 inline constexpr std::int64_t latest_us = 4'102'444'800'000'000;
 
-/// Of a pose in its odometry frame, in each coordinate [m]. Beyond it a double resolves no micrometres.
+/// Largest absolute coordinate of a pose in its odometry frame [m]. Beyond it a double resolves no
+/// micrometres.
 inline constexpr double largest_distance = 1e9;
 
 /// How far the length of a rotation's quaternion may be from 1: what a few printed digits leave.
@@ -42,27 +43,28 @@ inline constexpr Range translation_weight{0, 1e12};  ///< Balance::translation; 
 
 }  // namespace limits
 
-/// On the wire: a date.
+/// Whether a time on the wire is plausible: a date.
 constexpr bool plausible_time(std::int64_t time_us) {
   return time_us >= limits::earliest_us && time_us <= limits::latest_us;
 }
 
-/// In files and inside the library: a date or a relative time, which an offset may have moved below zero.
+/// Whether a time in files or inside the library is plausible: a date or a relative time, which an offset may
+/// have moved below zero.
 constexpr bool plausible_relative_time(std::int64_t time_us) {
   return time_us >= -limits::latest_us && time_us <= limits::latest_us;
 }
 
-/// Sequence numbers; -1 is an unknown one where a message allows it.
+/// Whether a sequence number is plausible; -1, an unknown one where a message allows it, is not.
 constexpr bool plausible_count(std::int64_t count) {
   return count >= 0 && count <= limits::largest_count;
 }
 
-/// False for NaN and infinity, too.
+/// Whether a distance or coordinate is plausible; false for NaN and infinity, too.
 inline bool plausible_distance(double metres) {
   return std::abs(metres) <= limits::largest_distance;
 }
 
-/// Of the rotation quaternion's length.
+/// Whether the length of a rotation's quaternion is plausible.
 inline bool plausible_norm(double norm) {
   return std::abs(norm - 1) <= limits::unit_tolerance;
 }

@@ -66,10 +66,10 @@ struct ScaleSearchOptions {
 /// Whether the scale of b differs from one by its own estimate. Where a machine mostly turns in place, few
 /// blocks of the drive hold the scale; the others fit any, and a test that counts blocks does not see it.
 struct ScaleCheckOptions {
-  /// Of the logarithm of the scale from 0. Study (an independent simulator, docs/trust_measured.md): the
-  /// largest of 2,588 drives whose scale is right has 3.5; of 126 excavators whose scale is wrong by 5 % and
-  /// more, and shows, all but one have more than 5. Real lidars and cameras reach 4.2 (KITTI), which `least`
-  /// allows.
+  /// Least distance of the logarithm of the scale from 0 [standard deviations]. Study (an independent
+  /// simulator, docs/trust_measured.md): the largest of 2,588 drives whose scale is right has 3.5; of 126
+  /// excavators whose scale is wrong by 5 % and more, and shows, all but one have more than 5. Real lidars
+  /// and cameras reach 4.2 (KITTI), which `least` allows.
   double sigmas = 5;
   /// Least logarithm of a scale that is named or makes an answer doubtful by itself: odometries of real
   /// sensors differ by up to 1 % (KITTI 0.4 %, EuRoC 0.8 %), and interpolation leaves less than 0.1 %
@@ -208,7 +208,7 @@ struct AnswerChangeOptions {
   double inlier = 0.25;       ///< least weight of a motion that counts (RobustFitOptions::inlier)
   std::size_t parts = 10;     ///< of the drive, whose own changes show what is chance
   std::size_t least = 3;      ///< motions in a part
-  /// Of a longer stream only the middle is looked at: a limit on time and memory.
+  /// Most poses of a stream that are looked at, from the middle of a longer one: a limit on time and memory.
   std::size_t most_poses = 10'000;
 };
 
@@ -223,8 +223,8 @@ struct UndersamplingOptions {
 /// Whether the clocks differ by so little that no single block of the drive shows it. Study:
 /// docs/trust_measured.md.
 struct ClockCheckOptions {
-  /// Of the offset from 0. Clean drives of the study stay below 3.8, real ones below 4.9 but for an arm whose
-  /// clocks do differ.
+  /// Least distance of the offset from 0 [standard deviations]. Clean drives of the study stay below 3.8,
+  /// real ones below 4.9 but for an arm whose clocks do differ.
   double sigmas = 5;
   double widest = 0.1;  ///< larger offsets are found by ClockSearchOptions [s]
   /// The corrected clock changes an answer from short motions by more than this many standard deviations of
@@ -247,7 +247,7 @@ LengthUnit unit_of_scaled(LengthUnit unit, double scale);
 
 /// When an answer counts as known or as wrong.
 struct DiagnosisOptions {
-  /// Of calibrate(): without it no other explanation is tried, and no answer is called good.
+  /// Whether calibrate() tries other explanations. Where it does not, no answer is called good.
   bool enabled = true;
   /// An answer is not called good where its rotation or its translation as a whole may be off by more than
   /// this (95 %), and is called contradictory where a better explanation has an answer further away [rad, m].

@@ -42,7 +42,7 @@ Matrix8d right_matrix(const DualQuaternion& q);     ///< Q_q^r of (10)
 /// there is none (real part zero, not finite, or its length outside of 1e-100 to 1e100), so that no check
 /// behind it is misled.
 DualQuaternion normalized(const DualQuaternion& q);
-/// Of q and -q the one whose real scalar is >= 0 (of a half turn: whose first non-zero real part is > 0).
+/// Returns q or -q, whichever has a real scalar >= 0 (for a half turn: a first non-zero real part > 0).
 DualQuaternion canonical_sign(const DualQuaternion& q);
 
 DualQuaternion to_dual_quaternion(const Pose& T);  ///< (6), (7); canonical sign

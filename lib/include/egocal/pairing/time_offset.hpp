@@ -23,8 +23,8 @@ struct TimeOffsetOptions {
   /// determines an offset to microseconds.
   std::size_t most_keys = 20'000;
   double motion = 0.5;  ///< length of the compared motions [s]: turns stand out of the noise of short steps
-  /// Of translation against a rotation weight of 1 [1/m^2]: rotations show time, translations only with the
-  /// lever arm.
+  /// Weight of translations against a rotation weight of 1 [1/m^2]: rotations show time, translations only
+  /// with the lever arm.
   double translation_weight = 0.01;
   /// A pose is a glitch, and a motion an outlier, where it differs by this many typical differences.
   double outlier = 8;
@@ -33,7 +33,7 @@ struct TimeOffsetOptions {
   double most_drift = 0.01;          ///< larger rates are taken for errors [s/s]; a poor quartz is at 1e-4
   double least_drift_duration = 30;  ///< shorter drives are taken to have no drift [s]
   /// An offset to search near, with `near_by` on both sides [s]; empty: all offsets at which streams overlap.
-  /// Of offsets that fit equally well it is the nearest one to this, and no doubt remains.
+  /// Among offsets that fit equally well, the nearest one to this is taken, and no doubt remains.
   std::optional<double> near{};
   double near_by = 1;
 
@@ -88,8 +88,8 @@ struct TimeOffsetOptions {
 /// What has to be added to the stamps of b so that both streams run on the clock of a.
 struct TimeOffset {
   double seconds = 0;  ///< at `at_us` [s]
-  /// Of `seconds`, from how much the parts of the drive differ [s]. Where other offsets fit as well it is the
-  /// distance of the farthest one of them that was compared.
+  /// Standard deviation of `seconds`, from how much the parts of the drive differ [s]. Where other offsets
+  /// fit as well, it is the distance of the farthest one of them that was compared.
   double stddev = 0;
   double correlation = 0;  ///< of the angles that both turn by, [-1, 1]; below about 0.5 do not trust it
   double rate = 0;         ///< by how much `seconds` grows per second of b's clock: the drift [s/s]

@@ -28,9 +28,9 @@ struct ConsistentSet {
   /// False where the pairs do not connect all sensors, or a cost matrix is not usable; nothing else is set.
   bool solved = false;
   std::vector<DualQuaternion> poses;  ///< of every sensor in sensor 0
-  /// Of these poses, x y z roll pitch yaw in sensor 0's frame [m, rad], by the jack-knife of the joint
-  /// minimum itself, with what noisy rotations take off the translations. Of solve_rig() alone, otherwise
-  /// empty.
+  /// Standard deviations of these poses, x y z roll pitch yaw in sensor 0's frame [m, rad], by the jack-knife
+  /// of the joint minimum itself, with what noisy rotations take off the translations. Only solve_rig() gives
+  /// them; otherwise empty.
   std::vector<std::array<double, 6>> stddev{};
   /// Sum over the pairs of J / J_min: each pair's own minimum counts 1, so that noisy pairs count less.
   double cost = 0;

@@ -21,8 +21,8 @@ struct ScaleSolution {
   double least_scale = 0, most_scale = 0;
   bool certified = false;  ///< the gap is within the tolerance, and q is certified at the scale
   bool at_limit = false;   ///< the best scale is the end of the range
-  /// Of `scale`, absolute: stddev / scale is the relative one. By the jack-knife over blocks, with
-  /// `attenuation`; infinite where unknown.
+  /// Absolute standard deviation of `scale`; stddev / scale is the relative one. It is from the jack-knife
+  /// over blocks, with `attenuation`; infinite where unknown.
   double stddev = 0;
   /// Change of the best extrinsic per relative change of the scale, x y z roll pitch yaw in the frame of q
   /// [m, rad]. What an unknown scale adds to the variance of a direction is the square of
