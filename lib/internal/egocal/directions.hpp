@@ -4,7 +4,8 @@
 
 namespace egocal {
 
-/// Of an extrinsic, in the order of all arrays of six: observability, standard deviations.
+/// Names of the directions of an extrinsic, in the order of all arrays of six: observability, standard
+/// deviations.
 inline constexpr const char* direction_names[] = {"x", "y", "z", "roll", "pitch", "yaw"};
 
 }  // namespace egocal

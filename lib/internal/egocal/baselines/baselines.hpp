@@ -23,8 +23,8 @@ struct BaselineAnswer {
 /// When solve_analytic() calls its answer valid. Study: tests/lib/test_baselines.cpp, noise and motions about
 /// one axis.
 struct AnalyticOptions {
-  /// Of the singular values in descending order, the seventh and eighth belong to the answer and are "almost
-  /// zero": the seventh is at most this part of the sixth.
+  /// Largest ratio of the seventh singular value to the sixth, in descending order: the seventh and eighth
+  /// belong to the answer and are "almost zero".
   double largest_ratio = 0.3;
   /// The rotation axes must leave their principal direction by more than the noise moves them: by this factor
   /// in the second moment. Two sensors on one body turn by the same angle, so the noise shows in the

@@ -21,7 +21,7 @@ std::string in_terms(std::string_view marked, const Terms& terms);
 
 /// Message and remedy of a finding in the words given, by the library's own terms.
 void say(Finding& finding, FindingWords words);
-/// Of one that holds for the whole drive.
+/// Message and remedy of a finding that holds for the whole drive.
 void say(Finding& finding, std::string claim, std::string cure, std::string evidence = {});
 
 /// Message and remedy by the reader's terms. A finding without words has one message and one remedy for all.

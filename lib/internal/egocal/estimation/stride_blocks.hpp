@@ -58,7 +58,7 @@ class StrideBlocks {
   /// Adds a motion of strides()[stride] that begins at an instant and ends at the newest one, by this weight.
   void add(std::size_t stride, std::uint64_t first_index, const detail::MotionSquare& motion,
            bool rotation_only, double weight);
-  /// One verdict a block.
+  /// Omits the blocks that are outliers: one verdict a block.
   void leave_out(std::vector<std::uint8_t> outlier) { state_.outlier = std::move(outlier); }
 
   std::size_t blocks() const { return state_.instants.size(); }
@@ -66,7 +66,7 @@ class StrideBlocks {
   /// Calls visit(cell, first block, last block) for the cells that hold motions and are not omitted.
   template <typename Visit>
   void each_cell(std::size_t stride, const Visit& visit) const;
-  /// Of one stride, without the blocks omitted.
+  /// Sum over the motions of one stride, without the blocks omitted.
   StrideCell total(std::size_t stride) const;
   /// Motions within one block, weighted: what the blocks say independently of each other.
   std::vector<Statistics> within(const StrideWeights& weights) const;
@@ -85,7 +85,7 @@ class TouchingSums {
  public:
   explicit TouchingSums(const StrideBlocks& blocks);
 
-  /// Of one stride.
+  /// Sum over the motions of one stride.
   const StrideCell& total(std::size_t stride) const { return strides_[stride].total; }
   /// The weighted sum; blocks that are omitted hold nothing.
   WeightedBlocks weighted(const StrideWeights& weights) const;

@@ -8,7 +8,7 @@
 
 namespace egocal {
 
-/// Of an open file, which is closed at the end.
+/// The descriptor of an open file, which is closed at the end.
 class Descriptor {
  public:
   explicit Descriptor(int fd = -1) : fd_(fd) {}

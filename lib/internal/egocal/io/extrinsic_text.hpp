@@ -40,8 +40,9 @@ struct NamedExtrinsic {
   std::string verdict{};  ///< good, incomplete, doubtful, contradictory; empty: it was not judged
   std::optional<NamedScale> scale{};  ///< that was found together with it; every format states it
   std::string reason{};               ///< of the verdict, one sentence; every format states both
-  /// Of x y z roll pitch yaw; every format states what is not of the motions. Nothing: it is not known, and
-  /// directions without a finite standard deviation count as Backing::none.
+  /// What the numbers of x y z roll pitch yaw rest on; every format states those that do not rest on the
+  /// motions. Empty: this is not known, and directions without a finite standard deviation count as
+  /// Backing::none.
   std::optional<std::array<Backing, 6>> backing{};
   std::string backing_frame{};  ///< the frame that these directions are of; empty: the parent's
 };

@@ -19,8 +19,8 @@ std::optional<Packing> packing_of(std::string_view first_bytes);
 /// What a shell unpacks the file by: "gunzip -k 'drive.log.gz'".
 std::string unpacking_command(const Packing& packing, const std::string& file);
 
-/// Of a packed LCM log, for people. A log is read at any place of it: it is played from there, and read on
-/// behind damage. So it is not unpacked on the way, as tables and bags are.
+/// Why a packed LCM log is refused, in words for people. A log is read at any place of it: it is played from
+/// there, and reading goes on behind damage. So it is not unpacked on the way, as tables and bags are.
 std::string packed_log_refused(const Packing& packing, const std::string& file);
 
 }  // namespace egocal

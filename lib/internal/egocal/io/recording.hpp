@@ -49,9 +49,9 @@ class Recording {
   virtual void read(const std::string& topic, const TakePose& take) = 0;
 
   const std::string& file() const { return file_; }
-  /// Those that the last pass has met; all of them after a pass over everything.
+  /// Streams that the last pass has met; all of them after a pass over everything.
   const std::vector<RecordedStream>& streams() const { return streams_; }
-  /// Of the last pass.
+  /// What the last pass has lost.
   const ReadLosses& losses() const { return losses_; }
   /// What was assumed about the file, one sentence each: units, rate, order of columns.
   const std::vector<std::string>& notes() const { return notes_; }

@@ -78,12 +78,13 @@ struct MovesOptions {
   /// "Limits".
   std::size_t block_pairs = 8, least_block_pairs = 4;
   double of_short_blocks = 1e-4;
-  /// Of the variance of sums of blocks to that of independent ones, at most. Where it is more, the noise
-  /// wanders for longer than a block, and what was found must show in blocks twice as long, until it is less,
-  /// with the chance of a false alarm at this one place. Where it still is more in the longest blocks, the
-  /// change is certain only where that chance is smaller by of_short_blocks, too: of 180 still drives of 30
-  /// and 60 s whose errors are remembered for 3 and 6 s 25 had a certain change without it, 6 with it.
-  /// Study: docs/moves.md; at 1.4 two of 650 drives of 100 s had a false alarm, at 1.2 one, without it three.
+  /// Largest ratio of the variance of sums of blocks to that of sums of independent blocks. Where the ratio
+  /// is larger, the noise wanders for longer than a block, and what was found must show in blocks twice as
+  /// long, until the ratio is small enough, with the chance of a false alarm at this one place. Where it is
+  /// still larger in the longest blocks, the change is certain only where that chance is smaller by
+  /// of_short_blocks, too: of 180 still drives of 30 and 60 s whose errors are remembered for 3 and 6 s, 25
+  /// had a certain change without this rule, 6 with it. Study: docs/moves.md; of 650 drives of 100 s, two had
+  /// a false alarm at 1.4, one at 1.2, three without the limit.
   double most_correlation = 1.2;
   std::size_t least_side_blocks = 2;  ///< blocks before and after a change
   /// And at least this part of the stretch: a few of many short blocks at its end are soon wrong by chance

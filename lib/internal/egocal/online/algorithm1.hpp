@@ -29,7 +29,8 @@ struct OnlineStep {
   Answer answer;
   OnlineState state;  ///< for the next step
   bool fast_verified = false;
-  /// Of the fast solution itself, also where the answer is the global one; empty on a first, global step.
+  /// Certificate of the fast solution itself, also where the answer is the global one; empty on a first,
+  /// global step.
   std::optional<Certificate> fast_certificate;
   bool global_wanted = false;  ///< the fast solution has not been verified for long enough
   bool global_used = false;    ///< the answer is the global solver's

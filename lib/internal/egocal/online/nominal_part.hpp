@@ -23,8 +23,9 @@ std::string known_in_words(const Pose& nominal);
 std::string wrong_with_part(const Pose& nominal);
 
 struct NominalPartOptions {
-  /// Of each combination of hidden directions that an error of 1 in the part moves the answer by 2 at most
-  /// (mathematics): a height is measured along an axis that leans by less than 60 degrees.
+  /// Least length of what the part shows of a unit combination of hidden directions (mathematics). An error
+  /// of 1 in the part then moves the answer by 2 at most: a height is measured along an axis that leans by
+  /// less than 60 degrees.
   double least_seen = 0.5;
 };
 

@@ -69,7 +69,7 @@ class MotionPairing {
   /// The same from the motions of the best single stride alone, in disjoint blocks.
   Problem single_stride_problem() const { return current().single_stride_problem(); }
   Choice choice() const { return current().choice(); }
-  /// Of the motion pairs that push() returns.
+  /// Stride of the motion pairs that push() returns.
   int stride_of_pairs() const { return accumulator_.choice().stride; }
   PairingCounts counts() const;
   /// The same, but before the first choice of motions as if none were made for an answer: costs nothing.
@@ -103,8 +103,8 @@ class MotionPairing {
   Synchroniser synchroniser_;
   Screening screening_;
   Accumulator accumulator_;
-  /// Of short drives, made from the accumulator where somebody asks: a choice costs a hundred times what a
-  /// pose does.
+  /// The accumulator that answers for short drives, made from accumulator_ where somebody asks: a choice
+  /// costs a hundred times what a pose does.
   mutable std::optional<Accumulator> early_;
   mutable bool early_is_old_ = false;
   bool settles_ = true;  ///< after every pose

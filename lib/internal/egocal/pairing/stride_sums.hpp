@@ -132,9 +132,9 @@ class StrideSums {
   StrideSumsState state_;
   /// Index of the first instant whose motions are not in state_.weighted yet; all later ones are not either.
   std::uint64_t first_pending_ = 0;
-  /// Of all motions that end before the instant with index all_until_, those of the open instants as well;
-  /// stale where these were judged anew since. Not part of the state: made again, the sums have the same
-  /// bits.
+  /// Sums over all motions that end before the instant with index all_until_, including those of the open
+  /// instants; stale where the open instants were judged anew since. Not part of the state: made again, the
+  /// sums have the same bits.
   StrideBlocks all_;
   std::uint64_t all_until_ = 0;
   bool all_stale_ = true;

@@ -19,9 +19,9 @@ struct InterpolationLossOptions {
   double motion = 1;       ///< length of the motions that lose [s]; as ScaleDriveOptions::motion
   std::size_t starts = 4;  ///< that begin within the length of one
   bool cut_alike = true;   ///< as SynchroniserOptions::cut_alike
-  /// Of what a motion loses when its ends are interpolated over two periods, this part is left where both
-  /// streams are cut alike (detail::cut_alike()): the fourth derivative of the path. Measured at rates of 4
-  /// to 20 Hz: 0.01 to 0.025 (docs/scale.md, "Interpolation").
+  /// Part that is left, where both streams are cut alike (detail::cut_alike()), of what a motion loses when
+  /// its ends are interpolated over two periods: the fourth derivative of the path. Measured at rates of 4 to
+  /// 20 Hz: 0.01 to 0.025 (docs/scale.md, "Interpolation").
   double share = 0.03;
   /// The same where they are not cut alike: a sixth is lost over one period at a random phase where the path
   /// is smooth, 1 - sinc^2(w P / 2) of 1 - cos(w P). Measured: 0 to 0.19.

@@ -40,14 +40,14 @@ struct ObservabilityOptions {
   /// A hidden direction with a larger part of translation in it is a translation; rotations need no test for
   /// shared noise. A half: 30 degrees between the direction and the space of the rotations.
   double least_translation_part = 0.5;
-  /// Of a unit direction, the part that must be translation (or rotation) for the hint to name it: what is
-  /// within 17 degrees of the other kind is mixed into it by noise. Changes the advice only.
+  /// Part of a unit direction that must be translation (or rotation) for the hint to name it: what is within
+  /// 17 degrees of the other kind is mixed into it by noise. Changes the advice only.
   double hinted_part = 0.3;
   /// A standard deviation needs at least this many blocks. With six, Student's factor is 1.31; with fewer it
   /// grows without bound (tests/bench/coverage_study.cpp).
   std::size_t least_blocks = 6;
-  /// Of neighbouring blocks: errors that last for longer than nine blocks cannot be told from systematic ones
-  /// in 32.
+  /// Largest correlation of neighbouring blocks: in 32 blocks, errors that last for longer than nine of them
+  /// cannot be told from systematic ones.
   double most_correlation = 0.8;
   /// Blocks that are as concentrated as fewer equal ones than this have no spread; Student's factor would
   /// grow without bound.
