@@ -63,7 +63,7 @@ Lmi<10, 21> rotation_constraints() {
   return lmi;
 }
 
-/// Of (vec R, 1, t): |R_a R - R R_b|^2 + |R_a t + t_a - R t_b - t|^2.
+/// The cost matrix of (vec R, 1, t): |R_a R - R R_b|^2 + |R_a t + t_a - R t_b - t|^2.
 Matrix13d cost_of(const std::vector<MotionPair>& pairs) {
   Matrix13d sum = Matrix13d::Zero();
   double weight = 0;

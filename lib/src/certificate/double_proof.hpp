@@ -7,7 +7,8 @@
 // The proofs of an ordinary answer in double, in the coordinates of the answer: docs/method.md, "In double".
 namespace egocal::detail {
 
-/// Of rotation (1) and translation (2): half of each, as Displacement has them.
+/// Curvatures of the cost along half of the rotation (1) and half of the translation (2), as Displacement has
+/// them.
 struct Curvatures {
   double rotation = 0, translation = 0;
 };
@@ -49,7 +50,7 @@ using LocalForm = Eigen::Matrix<double, 8, 8>;
 /// the rounding of these few numbers themselves. tau within 1e-100 and 1e100 keeps underflow below all that.
 class DoubleProof {
  public:
-  /// Of the form the lower triangle and the last column are read.
+  /// Reads only the lower triangle and the last column of the form.
   DoubleProof(const Square<8>& Q, const Column<8>& v, double cost, double bound, double orthogonal,
               const LocalForm& form);
   /// J(q') >= bound for every q' with |r'| = 1 and r'd' = 0.

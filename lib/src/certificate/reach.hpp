@@ -45,7 +45,7 @@ inline Displacement<8> displacement_from(const Column<8>& q) {
   return p;
 }
 
-/// Of the planar variables q1, q4, q6, q7.
+/// The displacement as forms of the planar variables q1, q4, q6, q7.
 inline Displacement<4> displacement_from(const Column<4>& v) {
   const Extended c = v[0], s = v[1], x = v[2], y = v[3];
   return {{{{-s, c, 0, 0}}}, {{{-x, -y, c, s}, {-y, x, -s, c}}}};

@@ -21,7 +21,7 @@ namespace {
 
 using detail::Vector6d;
 
-/// Of the noise, along the rotation: far above rounding.
+/// Least part of the noise that is left along the rotation: far above rounding.
 constexpr double least_left = 1e-6;
 
 /// The eigenvectors of D orthogonal to r (columns of `across`, ascending), and the part of each eigenvalue

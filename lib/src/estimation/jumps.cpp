@@ -90,7 +90,7 @@ struct Component {
     limit_relative = of_parts.median * factor(of_parts, options);
   }
 
-  /// Squared, as a multiple of the limit: above one it is a jump.
+  /// Squared ratio of a step's residual to the limit: above one the step is a jump.
   double excess(std::size_t i) const {
     if (!(limit > 0)) return 0;
     const double x = limit_relative > 0 ? std::min(residual[i] / limit, relative(i) / limit_relative)
@@ -98,7 +98,7 @@ struct Component {
     return x * x;
   }
 
-  /// Of the typical residual.
+  /// The residual as a multiple of the typical one.
   double multiple(std::size_t i) const { return typical > 0 ? residual[i] / typical : 0; }
 
  private:

@@ -32,7 +32,7 @@ double fitted_lambda(const StrideLadder& ladder, const std::vector<double>& vari
   return half - std::sqrt(half * half - 1);
 }
 
-/// Of each stride, the variances of translations without what rotations cause.
+/// Variances of translations of each stride, without what rotations cause.
 struct OwnTranslations {
   std::vector<double> variances;  ///< [m^2]
   std::vector<double> parts;      ///< of the whole variance

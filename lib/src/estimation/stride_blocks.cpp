@@ -43,9 +43,9 @@ void add(std::vector<Statistics>& sums, std::size_t blocks, std::size_t block, c
   sums[block] += more;
 }
 
-/// Of the first blocks [instants]. In blocks of one every motion is in two blocks, however short, so they do
-/// not tell what blocks share from errors that last: in drives of 20 and 30 motions intervals were up to 1.8
-/// times too wide (docs/intervals.md, "Blocks of two instants").
+/// Length of the first blocks [instants]. In blocks of one instant every motion is in two blocks, however
+/// short, so they do not tell what blocks share from errors that last: in drives of 20 and 30 motions
+/// intervals were up to 1.8 times too wide (docs/intervals.md, "Blocks of two instants").
 constexpr std::uint64_t first_block_length = 2;
 
 /// Least number of blocks between the ends of a motion of `stride` steps.

@@ -38,7 +38,7 @@ struct StrideResiduals {
 /// q: planar mode: T_p.
 StrideResiduals residuals(const StrideLadder& ladder, const DualQuaternion& q);
 
-/// Of each stride, the motions that share no step. counts: all of its motions.
+/// Number of motions of each stride that share no step. counts: all of its motions.
 std::vector<double> independent_motions(const StrideLadder& ladder, const std::vector<double>& counts);
 
 /// Grid of the ratio of a random walk's variance a step to that of the noise on

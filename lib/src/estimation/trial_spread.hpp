@@ -25,7 +25,7 @@ class TrialSpread {
   bool set(const StrideWeights& weights);
   /// The directions that the motions show by the weights on trial.
   SeenDirections seen() const { return seen_directions(problem_); }
-  /// Of the weights on trial, with the noise that omitting blocks misses.
+  /// The spread by the weights on trial, with the noise that omitting blocks misses.
   SpreadByPoses spread(const SeenDirections& seen) const;
 
  private:

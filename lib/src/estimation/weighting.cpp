@@ -22,7 +22,7 @@ using detail::StrideLadder;
 using detail::StrideResiduals;
 using detail::TrialSpread;
 
-/// Of each stride. sums: StrideBlocks, or TouchingSums of them.
+/// Sum over the motions of each stride. sums: StrideBlocks, or TouchingSums of them.
 template <typename Sums>
 std::vector<StrideCell> totals(const StrideBlocks& blocks, const Sums& sums) {
   std::vector<StrideCell> result;

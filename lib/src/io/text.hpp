@@ -11,13 +11,13 @@
 
 namespace egocal::detail {
 
-/// Of ASCII, whatever the locale.
+/// The lower case of an ASCII letter, whatever the locale; other characters stay.
 constexpr char lower_case(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-/// Of poses that have no times [Hz]: limits, within which the times of a billion rows can be told apart and
-/// do not overflow.
+/// Rates of poses that have no times [Hz]: limits, within which the times of a billion rows can be told apart
+/// and do not overflow.
 inline constexpr Range rates_of_poses{1e-3, 1e6};
 
 /// One line of a text file that holds data: comments (#) and empty lines are not among them.
@@ -53,7 +53,7 @@ double number(const std::string& file, long line, const std::string& field, std:
 /// What a text said, for one line that can be read: quoted, cut to 40 characters, no control characters.
 std::string quoted(std::string_view text);
 
-/// Of the numbers in a column of times: the power of ten that makes microseconds of them.
+/// Unit of the numbers in a column of times: the power of ten that makes microseconds of them.
 enum class TimeUnit { seconds = 6, milliseconds = 3, microseconds = 0, nanoseconds = -3 };
 /// A time in microseconds from its decimal text, rounded once, or from a date and time of ISO 8601, whatever
 /// the unit. Throws Error naming file and line.

@@ -16,7 +16,7 @@ using SquareUpToSix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6
 class SmallFactor {
  public:
   explicit SmallFactor(const SquareUpToSix& matrix);
-  /// Of a positive semidefinite matrix of finite numbers.
+  /// Whether the factored matrix is positive semidefinite, of finite numbers.
   bool positive() const;
   UpToSix solve(const UpToSix& right) const;
   SquareUpToSix solve(const SquareUpToSix& right) const;

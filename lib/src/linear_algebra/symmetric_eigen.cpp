@@ -10,7 +10,8 @@ namespace egocal::detail {
 
 namespace {
 
-/// Of any size to 10, without memory from the heap: a type of its own for each size is 5 s of compilation.
+/// A matrix of any size to 10, without memory from the heap: a type of its own for each size is 5 s of
+/// compilation.
 using UpToTen = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 10, 10>;
 
 /// What every answer needs (4, 6), or compiles fast (3), is compiled for its size.

@@ -36,7 +36,7 @@ constexpr std::array<std::uint8_t, 64> places_of_entries() {
 constexpr std::array<std::uint8_t, 64> places = places_of_entries();
 constexpr const std::uint8_t* number_at = places.data();
 
-/// Of any processor: pairs.
+/// Lanes of two numbers, for any processor.
 namespace narrow {
 
 #include "problem/lanes_of_two.hpp"

@@ -18,7 +18,8 @@ struct MotionsToOne {
   /// False for a half turn, or for poses that are no rotations: the rest is then unset, and motions_between()
   /// and MotionSquare say what they are. They are rare.
   std::array<bool, count> plain{};
-  /// Of both motions' quaternions, real and then dual ones: s, u and w of QuaternionDifference.
+  /// Differences of both motions' quaternions, of the real and then of the dual ones: s, u and w of
+  /// QuaternionDifference.
   std::array<std::array<double, count>, 14> differences;
 };
 

@@ -87,7 +87,7 @@ struct Quaternions {
   multiply(dual, sign);
 }
 
-/// Of motions with scalars >= 0.
+/// Sets the difference of motions with scalars >= 0.
 [[gnu::always_inline]] inline void set_difference(const Quaternions& a, const Quaternions& b,
                                                   Difference& to) {
   to.s = b.w - a.w;

@@ -65,7 +65,7 @@ ChangeEvidence evidence(Blocks blocks, Part second, const Division& d, const Par
 /// factor 1 + 2 r1 / (1 - phi). Both correlations are reduced by their standard deviation.
 double correlation_of(const std::vector<Parameters>& residuals, const ChangeTestOptions& options);
 
-/// Of the second extrinsic minus the first. V: of the evidence.
+/// Covariance of the second extrinsic minus the first. V: that of the evidence.
 ParameterMatrix covariance_of_change(const Division& d, const ParameterMatrix& V,
                                      const ChangeTestOptions& options);
 

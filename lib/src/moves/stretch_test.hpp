@@ -39,7 +39,7 @@ class StretchTest {
   double chance() const { return chance_; }
 
  private:
-  /// Of blocks of this number of pairs.
+  /// Chance of a false alarm that is allowed in blocks of this number of pairs.
   double false_alarms(std::size_t block_pairs) const;
 
   const TestedDrive& drive_;

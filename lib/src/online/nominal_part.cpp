@@ -22,7 +22,7 @@ bool knows_rotation(const Pose& nominal) {
   return nominal.rotation.coeffs().allFinite();
 }
 
-/// Of x y z and the rotation vector.
+/// Indices of what is known of x y z and the rotation vector.
 std::vector<Eigen::Index> known_rows(const Pose& part) {
   std::vector<Eigen::Index> rows;
   for (Eigen::Index i = 0; i < 3; ++i)

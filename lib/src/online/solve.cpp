@@ -41,8 +41,8 @@ detail::ProvenSolution minimise(const Matrix8d& Q, Method method,
   return {};
 }
 
-/// Of all equally good extrinsics the one closest to the prior: follows the directions in which the cost is
-/// flat up to rounding, as long as it does not rise. The set may be curved (rotation about a common axis),
+/// The extrinsic closest to the prior among all equally good ones: follows the directions in which the cost
+/// is flat up to rounding, as long as it does not rise. The set may be curved (rotation about a common axis),
 /// hence the steps.
 DualQuaternion nearest_to_prior(const Matrix8d& Q, const DualQuaternion& minimiser,
                                 const DualQuaternion& prior) {

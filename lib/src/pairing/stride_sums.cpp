@@ -150,7 +150,7 @@ void StrideSums::complete_all() {
   for (; all_until_ < state_.next_index; ++all_until_) add_motions(all_until_, &all_, nullptr);
 }
 
-/// Of all motions, those of the open instants as well.
+/// Sums over all motions, including those of the open instants.
 StrideBlocks& StrideSums::sums() {
   complete_all();
   std::vector<std::uint8_t> outlier(all_.blocks(), 0);

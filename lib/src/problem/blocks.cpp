@@ -33,7 +33,7 @@ std::vector<Block> merged(const std::vector<Block>& blocks) {
 
 }  // namespace
 
-/// Of the verdict, with room for one more motion.
+/// Statistics of the newest block with this verdict, with room for one more motion.
 Statistics& BlockStatistics::newest(bool outlier) {
   const auto newest = [&] {
     return std::find_if(state_.blocks.rbegin(), state_.blocks.rend(),

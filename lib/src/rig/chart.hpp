@@ -16,7 +16,7 @@ struct Chart {
   double u = 0, v = 0;       ///< |real part of C y| <= u |y|, |dual part| <= v |y|
 };
 
-/// Of the pair of this pose with sensor 0, its inequality proven; empty where it cannot be.
+/// The chart of a pose from its pair with sensor 0, its inequality proven; empty where it cannot be.
 std::optional<Chart> chart_of(const Form& form);
 
 using Matrix6 = std::array<std::array<double, 6>, 6>;

@@ -12,7 +12,7 @@ struct Remainder {
   double product = 0, square_a = 0, square_b = 0;
 };
 
-/// Of two poses whose coordinates are at most `radius` long.
+/// The remainder for two poses whose coordinates are at most `radius` long.
 Remainder remainder_of(const Form& form, const Chart& a, const Chart& b, double radius);
 
 /// The part that the scalars p0 - 1 and e of one pose add to the remainder.

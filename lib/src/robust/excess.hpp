@@ -14,7 +14,7 @@ inline double squared_size(const Matrix8d& Q) {
   return Q.topLeftCorner<4, 4>().trace();
 }
 
-/// Of a residual over what is typical of motions of this size, both mean squared.
+/// Ratio of a residual to what is typical of motions of this size. residual, size: mean squared.
 inline double excess(double residual, double size, const ResidualScale& scale,
                      const ConsensusOptions& options) {
   return std::min(residual / scale.absolute,

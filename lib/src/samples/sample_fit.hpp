@@ -26,8 +26,8 @@ class SampleSet {
   explicit SampleSet(std::span<const PoseSample> samples);
 
   std::size_t size() const { return seen_.size(); }
-  /// That makes rotations and translations comparable: distance of the target and of the sensors from each
-  /// other [m].
+  /// The length that makes rotations and translations comparable: distance of the target and of the sensors
+  /// from each other [m].
   double length() const { return length_; }
   const Eigen::Vector3d& middle() const { return middle_; }
   const SeenTarget& seen(std::size_t i) const { return seen_[i]; }

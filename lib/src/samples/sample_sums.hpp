@@ -25,8 +25,8 @@ struct SampleSums {
 
   void add(const SampleSums& one, double sign);
 
-  /// Of all motions between two samples, divided by their number; positions from `origin` [m], where twice
-  /// the length of a dual part is the distance.
+  /// Statistics of all motions between two samples, divided by the number of samples; positions are from
+  /// `origin` [m], where twice the length of a dual part is the distance.
   Statistics centred(const Eigen::Vector3d& origin) const;
   /// The mean of the targets that are seen with this X.
   DualQuaternion mean_target(const DualQuaternion& X) const;

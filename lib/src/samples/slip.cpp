@@ -21,7 +21,7 @@ namespace {
 using Vector12d = Eigen::Matrix<double, 12, 1>;
 using Matrix12d = Eigen::Matrix<double, 12, 12>;
 
-/// Of one unit or several: the normal equations of X (frame_a_moved()) and Y together, in variances.
+/// The normal equations of one unit or several, of X (frame_a_moved()) and Y together, in variances.
 struct Normal {
   Matrix12d H = Matrix12d::Zero();
   Vector12d g = Vector12d::Zero();

@@ -74,7 +74,7 @@ class Search {
     return least;
   }
 
-  /// Of a stretch with more than one change.
+  /// Least number of blocks in a part of a stretch with more than one change.
   std::size_t least_part(const Blocks& blocks) const {
     return std::max<std::size_t>(
         2, static_cast<std::size_t>(options_.least_part * static_cast<double>(blocks.size())));

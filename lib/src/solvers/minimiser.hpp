@@ -7,7 +7,7 @@
 
 namespace egocal::detail {
 
-/// Of (18); planar mode: T_p, of (18) under (26).
+/// The minimiser of (18); planar mode: T_p, that of (18) under (26).
 DualQuaternion minimiser(const Matrix8d& Q, Mode mode);
 
 /// T_a_b of a minimiser of the problem's cost; planar mode: (27).

@@ -63,10 +63,11 @@ class Jackknife {
   }
   /// Lag-one correlation of errors that last, from that of what omitting a block changes: the mean over the
   /// parts that change at all. shared: what neighbours correlate by where no error lasts, which is taken off.
-  /// Of m equal blocks, as seen from their own mean, a correlation of r is found as r - (1 + 3 r) / m in the
-  /// mean (Kendall 1954), which is undone; 3 r / m only of errors that last. Undone of what is shared as
-  /// well, noise on the motions of one sensor and the poses of the other would have r = 0.37, not 0.18, in
-  /// 100 motions, as m is less than the number of blocks that touch (docs/intervals.md, "Noise that lasts").
+  /// In m equal blocks, seen from their own mean, a correlation of r is found as r - (1 + 3 r) / m on average
+  /// (Kendall 1954). This is undone, its part 3 r / m only for errors that last. If it were undone for what
+  /// is shared as well, noise on the motions of one sensor and the poses of the other would have r = 0.37,
+  /// not 0.18, in 100 motions, as m is less than the number of blocks that touch (docs/intervals.md, "Noise
+  /// that lasts").
   double correlation_of_neighbours(double shared, double m) const {
     return mean_over_parts([&](int i) { return lasting(neighbours_.correlation(i, 1), shared, m); });
   }

@@ -102,7 +102,7 @@ constexpr int place(int i, int j) {
 
 }  // namespace single
 
-/// Of any processor: pairs.
+/// Lanes of two numbers, for any processor.
 namespace narrow {
 
 #include "problem/lanes_of_two.hpp"

@@ -71,8 +71,8 @@ class TangentSpace {
   TangentForm form(const Statistics& statistics) const;
   /// Whether the first three directions do not rotate.
   bool starts_with_translations() const { return starts_with_translations_; }
-  /// Of four, up to rounding, at little more than the cost of one, in a space that starts with translations.
-  /// in_pairs: as on processors without AVX2, with the same bits (for tests).
+  /// Forms of four statistics, up to rounding, at little more than the cost of one, in a space that starts
+  /// with translations. in_pairs: as on processors without AVX2, with the same bits (for tests).
   FourForms forms(const std::array<const Statistics*, 4>& statistics, bool in_pairs = false) const;
   /// The Newton step to the minimum of the form, in the first `directions` coordinates; the others are zero.
   /// Infinite where the curvature is not positive definite.
@@ -92,8 +92,8 @@ class TangentSpace {
   TangentNumbers numbers_;
 };
 
-/// Of each of four symmetric matrices the sums of its numbers, column by column of the upper triangle, times
-/// the columns of this; zero where they are negative.
+/// The sums of the numbers of each of four symmetric matrices, column by column of the upper triangle, times
+/// the columns of a TriangleProducts; zero where they are negative.
 using TriangleProducts = Eigen::Matrix<double, 6, 21>;
 Fours<6> sums_of_products(const FourForms& forms, const TriangleProducts& products, bool in_pairs = false);
 

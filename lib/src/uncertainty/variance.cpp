@@ -55,9 +55,9 @@ void set_information(Blocks& blocks, const std::vector<FourForms>& transposed, c
     blocks.information[i] = sums_of_products(transposed.empty() ? blocks.forms[i] : transposed[i], products);
 }
 
-/// Of a step in the directions that are seen: with their curvature H = LDL', L' times the step. Errors of
-/// these parts are independent, and of one size up to D, where the noise is what the weights are made for.
-/// factors: of factorise().
+/// Parts of a step in the directions that are seen: with the curvature H = LDL' of these directions, L' times
+/// the step. Errors of these parts are independent, and of one size up to D, where the noise is what the
+/// weights are made for. factors: of factorise().
 Vector6d independent_parts(const Matrix6d& factors, const Vector6d& step, int shown) {
   Vector6d parts = Vector6d::Zero();
   for (int j = 0; j < shown; ++j) {
@@ -206,10 +206,10 @@ double of_near_blocks(double sum, double error, double freedom) {
 /// standard deviations that are 1.5 % larger in 25 blocks (docs/intervals.md, "Noise that lasts").
 constexpr double part_of_own = 0.3;
 
-/// Of each direction, the larger of two: of_fading(), and the sum of the correlations of near blocks, as
-/// errors need not fade like that. Where blocks touch, most of what single directions and chance show is
-/// what the blocks share, so both count as far as they do not: measured, not derived (docs/intervals.md,
-/// "Noise that lasts").
+/// Factor of the variance of each direction by errors that last: the larger of of_fading() and
+/// of_near_blocks(), which sums the correlations of near blocks, as errors need not fade like that. Where
+/// blocks touch, most of what single directions and chance show is what the blocks share, so both count only
+/// as far as blocks do not touch: measured, not derived (docs/intervals.md, "Noise that lasts").
 Vector6d of_memory(const Jackknife& single, double overlap, const ObservabilityOptions& options) {
   const Sharing sharing(overlap);
   const double blocks = single.mean_equal_blocks(options.least_equal_blocks);

@@ -138,7 +138,7 @@ std::string ByteSource::why_empty() const {
          (failure_ == Failure::cut_off ? "cut off" : "damaged") + " before the first row";
 }
 
-/// Of the packed file, from where unpacking has ended; of a pipe what has been read.
+/// Bytes left of the packed file, from where unpacking has ended; of a pipe those that have been read.
 std::uint64_t ByteSource::packed_left() const {
   const std::uint64_t read = packed_end_ - packed_at_;
   const off_t at = seekable_ ? ::lseek(descriptor_.get(), 0, SEEK_CUR) : -1;

@@ -36,7 +36,7 @@ class ByteSource {
   ByteSpan peek(std::size_t size);
   /// Passes over `size` bytes; returns how many there were.
   std::uint64_t skip(std::uint64_t size);
-  /// Of the next byte, after unpacking.
+  /// Offset of the next byte, after unpacking.
   std::uint64_t offset() const { return window_offset_ + position_; }
   /// Bytes of the whole file where that is known: a plain file on a disk; otherwise 0.
   std::uint64_t plain_size() const { return unpacker_ ? 0 : size_; }

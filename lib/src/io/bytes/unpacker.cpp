@@ -18,8 +18,8 @@ namespace egocal::detail {
 namespace {
 
 constexpr std::size_t largest_step = std::numeric_limits<unsigned int>::max() / 2;
-/// Of zstd and lz4, which then ask for as much as they need for a block: what a call unpacks before it finds
-/// damage is lost, so none is given more.
+/// Size of the first input of zstd and lz4, which then ask for as much as they need for a block: what a call
+/// unpacks before it finds damage is lost, so no call is given more.
 constexpr std::size_t first_input = 4;  // [bytes]
 
 class Gzip : public Unpacker {

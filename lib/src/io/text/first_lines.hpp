@@ -17,7 +17,7 @@ struct Sniffed {
   std::vector<Line> data;      ///< the first may be a header
 };
 
-/// Of the first 64 KiB. Throws Error where the file is no text, or text of another kind.
+/// The lines of the first 64 KiB. Throws Error where the file is no text, or text of another kind.
 Sniffed sniff(ByteSource& source);
 
 /// The character between the fields: ' ' for blanks and tabs that merge, '\t', ',' or ';'. columns: of the

@@ -107,7 +107,7 @@ AngleUnit TextRecording::unit_by_rows(const std::vector<Quantity>& angles) {
   return unit;
 }
 
-/// Of a row that may be unreadable, then 0.
+/// Time of a row [s]; 0 where the row is unreadable.
 double TextRecording::seconds_of_row(const TextRows& rows) const {
   if (rows.fields.size() < layout_.fields) return 0;
   try {

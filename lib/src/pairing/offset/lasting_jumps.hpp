@@ -14,7 +14,8 @@ namespace egocal::detail {
 /// Study: tests/lib/test_time_offset.cpp.
 struct LastingJumpOptions {
   double outlier = 8;  ///< typical differences between a step and the mean of its neighbours
-  /// Of the larger neighbour: a sensor that begins to move, or turns a corner, differs by less.
+  /// Least difference of a jump, as a part of the larger neighbour: a sensor that begins to move, or turns a
+  /// corner, differs by less.
   double least_part = 1;
   /// Largest part of the steps. If more look like jumps, the stream is one of steps: an odometry that repeats
   /// its poses.

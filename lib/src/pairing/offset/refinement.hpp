@@ -57,7 +57,7 @@ class Refinement {
     DualQuaternion motion;         ///< of the slower stream
     double angle = 0;
   };
-  /// Of the other stream, over the same time on its clock.
+  /// The motion of the other stream over the same time on its clock.
   struct Other {
     DualQuaternion motion;
     double angle = 0;
