@@ -76,7 +76,7 @@ Choice choose_balance(const Problem& problem, const PairingOptions& options) {
   return choice;
 }
 
-/// Empty where that is not needed.
+/// The problem with rotation noise taken off; empty where that is not needed.
 std::optional<Problem> without_rotation_noise(const Problem& problem, Choice& choice) {
   const std::optional<Attenuation> attenuation = find_attenuation(problem);
   if (!attenuation) return std::nullopt;

@@ -15,7 +15,8 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// "drive.tum:12: field 3 (ty): expected a number, got 'abc'". line < 1 and empty parts are omitted.
+/// An error with the message "drive.tum:12: field 3 (ty): expected a number, got 'abc'". line < 1 and empty
+/// parts are omitted.
 Error error_at(const std::string& file, long line, const std::string& field, const std::string& problem);
 
 }  // namespace egocal

@@ -10,8 +10,9 @@
 
 namespace egocal::detail {
 
-/// With a floor under the typical differences that is no lower than one standard deviation of what the digits
-/// of both streams make of the angle and of the length of a motion. Streams with more digits change nothing.
+/// The options with a floor under the typical differences that is no lower than one standard deviation of
+/// what the digits of both streams make of the angle and of the length of a motion. Streams with more digits
+/// change nothing.
 PairingOptions with_rounding(PairingOptions options, const Trajectory& a, const Trajectory& b);
 
 }  // namespace egocal::detail

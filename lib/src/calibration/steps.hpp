@@ -16,7 +16,7 @@ Calibration solved(Problem problem, Choice choice, const PairingCounts& counts, 
 Answered answered(const Calibration& calibration, Problem single,
                   const std::optional<ScaleSolution>& scale = std::nullopt);
 
-/// With the diagnosis, and what the times add to the standard deviations.
+/// The calibration with the diagnosis, and with what the times add to the standard deviations.
 Calibration judged(Calibration calibration, Diagnosis diagnosis);
 
 /// What was answered says how well each direction is known, but not whether the motions agree.

@@ -54,7 +54,7 @@ struct Quartiles {
   }
 };
 
-/// By which both sensors turn at least [rad].
+/// The angle by which both sensors turn at least [rad].
 double smaller_angle(const Step& step) {
   const double sine_a = step.a.real.tail<3>().norm(), sine_b = step.b.real.tail<3>().norm();
   const DualQuaternion& smaller = sine_a < sine_b ? step.a : step.b;
@@ -178,7 +178,7 @@ class Judge {
     return result;
   }
 
-  /// By the newest look.
+  /// Verdict on each step by the newest look.
   std::vector<StepVerdict> verdicts(const std::vector<Jump>& jumps) const {
     std::vector<StepVerdict> result;
     double far = 0, usable_steps = 0;

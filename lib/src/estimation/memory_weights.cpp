@@ -63,9 +63,8 @@ OwnTranslations own_translations(const StrideLadder& ladder, const StrideResidua
   return own;
 }
 
-/// Per motion, before rotation and translation are balanced. Strides whose
-/// motions are lost in the rounding of the others are skipped: most of them,
-/// where noise adds up from step to step.
+/// Weight of a motion of each stride, before rotation and translation are balanced. Strides whose motions are
+/// lost in the rounding of the others are skipped: most of them, where noise adds up from step to step.
 std::vector<double> shape(const StrideLadder& ladder, double lambda, const std::vector<double>& counts) {
   std::vector<double> weights;
   for (std::size_t i = 0; i < ladder.size(); ++i) {
@@ -105,7 +104,7 @@ StrideWeights balanced(const StrideLadder& ladder, StrideWeights shapes, const S
   return shapes;
 }
 
-/// With the mean stride and the ratio of the weights.
+/// The choice of these weights, with their mean stride and the ratio of the weights.
 WeightChoice completed(const StrideLadder& ladder, StrideWeights weights, const DualQuaternion& q,
                        double memory) {
   WeightChoice choice{std::move(weights), q, memory, 1, 1, true, {}};

@@ -13,10 +13,9 @@ class SingleStrideRival {
   /// rival and options must outlive it.
   SingleStrideRival(const SingleStride& rival, const WeightingOptions& options);
 
-  /// Its own answer leaves far more of its motions than q does: it is at a
-  /// wrong minimum.
+  /// Whether the rival's own answer leaves far more of its motions than q does: it is at a wrong minimum.
   bool is_refuted_by(const DualQuaternion& q) const;
-  /// q leaves far more of its motions than its own answer does.
+  /// Whether q leaves far more of the rival's motions than the rival's own answer does.
   bool refutes(const DualQuaternion& q) const;
   /// Whether the sum's spread is clearly smaller. mean_stride: of the sum
   /// [steps]. in_force: the sum has the place already. trial: changed, the

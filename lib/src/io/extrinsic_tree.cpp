@@ -48,7 +48,7 @@ class Groups {
     while (parent_[at] != at) at = parent_[at];
     return at;
   }
-  /// False where they were one group already.
+  /// Joins the groups of two frames; false where they were one group already.
   bool join(const std::string& a, const std::string& b) {
     const std::size_t x = of(a), y = of(b);
     parent_[std::max(x, y)] = std::min(x, y);

@@ -311,10 +311,11 @@ struct DiagnosisOptions {
   /// boat with a tenth of outliers and 4 degrees of noise has 0.80, and with a fifth of outliers is called
   /// unrelated (0.68).
   double unrelated_misfit = 0.15, unrelated_part_correlation = 0.78, unrelated_part = 0.8;
-  /// For the same [s]: in a shorter drive noise may be what the sensors turn by. Of 352 parts of 4 and 8 s of
-  /// right drives 20 would be called unrelated, of 340 of 15 and 25 s none.
+  /// Shortest drive that is called unrelated by this [s]: in a shorter one noise may be what the sensors turn
+  /// by. Of 352 parts of 4 and 8 s of right drives 20 would be called unrelated, of 340 of 15 and 25 s none.
   double unrelated_least_seconds = 12;
-  /// In all, of outliers cleared: turned by less, the noise of odometry decides [rad].
+  /// Least turning in all, of outliers cleared [rad]: where streams turn by less, the noise of odometry
+  /// decides.
   double least_turning = 0.1;
   MotionSampleOptions motions;
   RobustFitOptions fit;

@@ -107,7 +107,7 @@ struct Goal {
   std::string next;                    ///< the manoeuvre that helps most, for a driver; empty when reached
 };
 
-/// All of it.
+/// Everything that is said of an answer and its streams.
 struct Diagnosis {
   Verdict verdict = Verdict::incomplete;
   std::string reason;  ///< of the verdict, one line

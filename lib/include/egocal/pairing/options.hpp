@@ -144,8 +144,8 @@ struct AccumulatorOptions {
   /// later depends on. With equal weights drives of 20 to 60 poses are off by three times as much; from fewer
   /// than 16, one answer in a hundred is called good and is off (docs/weights.md, "From how many poses on").
   std::uint64_t early_choice = 16;
-  /// In [0, 1): several pairs of one rig choose at different times. Each choice comes later by this share of
-  /// the instants to the next one.
+  /// Share of the instants to the next choice by which each choice comes later, in [0, 1): several pairs of
+  /// one rig choose at different times.
   double choice_phase = 0;
 };
 

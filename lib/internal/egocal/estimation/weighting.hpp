@@ -70,9 +70,10 @@ struct WeightingOptions {
   /// of the logarithms of two spreads of about 16 blocks scatters by a quarter.
   double taken_off = 0.01;
   double clearly_unpaired = 0.25;
-  /// And where the two answers differ by at most this many standard deviations of the single stride's,
-  /// in rotation and in translation. Motions of one stride are judged one by one; the sum omits whole
-  /// blocks, and many short stretches of wrong poses pass (tests/lib/test_outliers.cpp: 3 deg off).
+  /// The sum replaces the rival only where the two answers differ by at most this many standard deviations of
+  /// the single stride's, in rotation and in translation. Motions of one stride are judged one by one; the
+  /// sum omits whole blocks, and many short stretches of wrong poses pass (tests/lib/test_outliers.cpp: 3 deg
+  /// off).
   double agreement = 3;
   /// The same in each principal direction alone, of translation and of rotation
   /// (SelectionOptions::contradicts): shorter motions may have been refused for one of them.

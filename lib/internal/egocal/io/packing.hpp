@@ -13,7 +13,7 @@ struct Packing {
   std::string_view name, command;  ///< "gzip", and the program with its options that unpacks a file
 };
 
-/// By the first bytes of the file, six or more. Nothing: it is not packed.
+/// How a file is packed, by its first bytes, six or more; empty where it is not packed.
 std::optional<Packing> packing_of(std::string_view first_bytes);
 
 /// What a shell unpacks the file by: "gunzip -k 'drive.log.gz'".

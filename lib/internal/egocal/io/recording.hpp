@@ -80,7 +80,7 @@ struct RecordingName {
 };
 RecordingName parse_recording_name(const std::string& text);
 
-/// As read_trajectory_file(), of a recording that is open already.
+/// Reads a trajectory as read_trajectory_file() does, from a recording that is open already.
 TrajectoryReading read_trajectory_of(Recording& recording, const std::string& topic);
 
 /// Sorts by time and keeps the first of equal times; counts both.

@@ -87,15 +87,15 @@ struct MovesOptions {
   /// a false alarm at 1.4, one at 1.2, three without the limit.
   double most_correlation = 1.2;
   std::size_t least_side_blocks = 2;  ///< blocks before and after a change
-  /// And at least this part of the stretch: a few of many short blocks at its end are soon wrong by chance
-  /// where the noise has heavy tails.
+  /// Least part of the stretch before and after a change, as well: a few of many short blocks at its end are
+  /// soon wrong by chance where the noise has heavy tails.
   double least_side = 1.0 / 32;
   /// A mount that moves and falls back is looked for where nothing else is found, with this part of the
   /// chance of a false alarm: the sum hardly grows, and the evidence is hardly ever near it.
   double of_falling_back = 0.1;
-  /// It was displaced for at least this part of the stretch. An odometry that errs in one place, as two
-  /// lidars do for 13 of KITTI 05's 276 s, looks like a mount that moved there. Study: docs/moves.md,
-  /// "Falling back".
+  /// A mount that falls back was displaced for at least this part of the stretch. An odometry that errs in
+  /// one place, as two lidars do for 13 of KITTI 05's 276 s, looks like a mount that moved there. Study:
+  /// docs/moves.md, "Falling back".
   double least_displaced = 0.1;
   /// The parts before and after it agree, or differ by less than this part of the change: less is left of two
   /// moves than each of them is.

@@ -10,7 +10,8 @@ namespace egocal {
 
 struct OnlineOptions {
   Method fast = Method::sqp;
-  /// Empty: the global solution is another process's work; the step then only says that it is wanted.
+  /// Method of the global solution. Empty: that is another process's work, and the step only says that it is
+  /// wanted.
   std::optional<Method> global = Method::dual;
   double t_no_fail = 5.0;  ///< [s] of measured time that the fast solution must have been verified for
   NanosecondClock clock = nullptr;  ///< for the timings of the answer

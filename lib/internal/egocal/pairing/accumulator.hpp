@@ -57,7 +57,7 @@ struct SumsStep {
   std::int64_t period_us = 0;  ///< of a new beginning
   bool doubtful = false;
   bool choose = false;  ///< the weights, after the instant
-  /// Where weights or stride were chosen, which is rare: the best one.
+  /// The best single stride, where weights or stride were chosen, which is rare.
   std::shared_ptr<const SingleStride> single;
 };
 
@@ -87,11 +87,11 @@ class Accumulator {
   /// All of them in order, before anything else is asked: the same bits as without defer_sums().
   void add_to_sums(const std::vector<SumsStep>& steps);
 
-  /// Before the first choice, but from AccumulatorOptions::early_choice on: what would be known if one were
-  /// made now. Empty at other times. This accumulator goes on without it, so that no later answer depends on
-  /// when it was asked.
+  /// What would be known if a choice were made now: before the first choice, but from
+  /// AccumulatorOptions::early_choice on. Empty at other times. This accumulator goes on without that choice,
+  /// so that no later answer depends on when it was asked.
   std::optional<Accumulator> with_early_choice() const;
-  /// Whether there would be one.
+  /// Whether with_early_choice() would return one.
   bool chooses_early() const;
 
   /// What is known so far, at the choice in force.

@@ -43,8 +43,8 @@ struct SelectionOptions {
   /// rotations weigh this many times as much. An aircraft at 100 m/s errs by 20 m and 2 deg in four seconds:
   /// the balance is 3e-6, and with 0.001 its answer was turned about the direction of travel by 150 deg.
   double imbalance = 10;
-  /// Only where translations err by more than this, root mean square [m]: else poses without noise but with
-  /// outliers lose (benchmark, four outliers: 12 instead of 10 mm).
+  /// Smaller balances are tried only where translations err by more than this, root mean square [m]: else
+  /// poses without noise but with outliers lose (benchmark, four outliers: 12 instead of 10 mm).
   double least_error = 1;
   double least_balance = 1e-9;  ///< smaller ones are not tried: a cost in metres keeps its digits [1/m^2]
 };

@@ -93,9 +93,9 @@ class StrideSums {
   /// Judges the open instants again and chooses the weights. rival: the best single stride.
   void choose(const std::optional<SingleStride>& rival = {});
 
-  /// Empty until a choice was made.
+  /// The newest choice; empty until one was made.
   const std::optional<WeightChoice>& choice() const { return state_.choice; }
-  /// A choice was made, and its spread is clearly smaller than the rival's.
+  /// Whether a choice was made and its spread is clearly smaller than the rival's.
   bool in_force() const { return state_.choice && state_.choice->beats_single; }
   /// Sets blocks and balance of a problem, at the choice in force.
   void fill(Problem& problem) const;

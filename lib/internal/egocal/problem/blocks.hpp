@@ -19,7 +19,7 @@ class MotionSquare;
 class BlockStatistics {
  public:
   static constexpr std::size_t max_blocks = 64;  ///< format: of state and messages
-  /// As many as inliers() returns at most: what a message carries and the jack-knife omits one by one.
+  /// Most blocks that inliers() returns: what a message carries and the jack-knife omits one by one.
   static constexpr std::size_t max_inlier_blocks = 32;
 
   struct Block {
@@ -35,11 +35,11 @@ class BlockStatistics {
   BlockStatistics() = default;
   explicit BlockStatistics(State state) : state_(std::move(state)) {}
 
-  /// To the newest block of that verdict.
+  /// Adds a motion to the newest block of that verdict.
   void add(const MotionPair& pair, bool outlier = false);
-  /// A motion of weight one, to the newest block that is no outlier.
+  /// Adds a motion of weight one to the newest block that is no outlier.
   void add(const detail::MotionSquare& motion);
-  /// One verdict a block.
+  /// Omits the blocks that are outliers: one verdict a block.
   void leave_out(const std::vector<bool>& verdicts);
 
   /// The blocks that are not omitted, neighbours joined where there are more than max_inlier_blocks.

@@ -37,7 +37,8 @@ struct ConsensusOptions {
   /// motion. The mean of many motions is steadier than one: limit_of_many + (limit_of_one - limit_of_many) /
   /// motions.
   double limit_of_many = 6, limit_of_one = 200;
-  /// Nothing better than a hundredth of the motion is expected of odometry, squared.
+  /// Least relative residual (squared): nothing better than a hundredth of the motion is expected of
+  /// odometry.
   double least_relative = 1e-4;
   /// Residuals smaller than this part of the motion are rounding: nine digits of a quaternion.
   double rounding = 1e-9;

@@ -21,7 +21,8 @@ struct RobustOptions {
   /// still outliers then, the next run has to be twice as long, until the drive has grown: of a mount that
   /// turned half-way, run after run contradicts the rest (1500 looks in 20,000 poses).
   std::uint64_t suspicious_run = 4;
-  /// And after this part of the pairs more (an eighth): looking stays a constant part of the work.
+  /// The consensus is also looked for after this part of the pairs more (an eighth): looking stays a constant
+  /// part of the work.
   std::uint64_t look_part = 8;
   ConsensusOptions consensus{};
 };

@@ -14,8 +14,9 @@
 namespace egocal {
 
 struct ScaleDriveOptions {
-  /// Its stride and its rejection of poses are not used: at a wrong scale no motion is screw congruent. A
-  /// fixed balance is; empty: by the noise of the motions.
+  /// Options of the pairing. Its stride and its rejection of poses are not used: at a wrong scale no motion
+  /// is screw congruent. A fixed balance is used; where it is empty, the balance follows from the noise of
+  /// the motions.
   PairingOptions pairing;
   ScaleOptions scale;  ///< its mode and balance are replaced by those of the pairing
   /// Length of a motion [s]: long enough to be more than noise, short enough to be many; as offline
@@ -84,19 +85,19 @@ class ScaleDrive {
 
   /// Takes the next pose of one stream. Returns the motions that it completed, at the scale in force.
   std::vector<MotionPair> push(Side side, const StampedPose& pose);
-  /// As MotionPairing::release_held().
+  /// Motions of poses that were held back, as MotionPairing::release_held() gives them.
   std::vector<MotionPair> release_held() { return taken(pairing_.release_held()); }
 
-  /// The newest solution's, for others to solve; empty before the first one.
+  /// The scale problem of the newest solution, for others to solve; empty before the first one.
   const std::optional<ScaleProblem>& scale_problem() const { return state_.problem; }
   const ScaleSolution& solution() const { return state_.solution; }
-  /// The scale is certified and observable: it is in force.
+  /// Whether the scale is certified and observable, and so in force.
   bool known() const;
   /// The problem at the scale in force, from the motions of the newest solution; empty while it is unknown.
   std::optional<Problem> problem() const;
   /// Poses, clock and synchronisation.
   const MotionPairing& pairing() const { return pairing_; }
-  /// Its motions are those of the newest solution.
+  /// Counts of the pairing; the motions are those of the newest solution.
   PairingCounts counts() const;
   Choice choice() const;
   std::uint64_t motions() const { return state_.motions; }

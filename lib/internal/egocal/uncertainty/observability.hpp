@@ -79,11 +79,12 @@ struct DirectionBasis {
   Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::DontAlign, 6, 6> basis;
   double length = 1;  ///< [m]
 };
-/// Those that the motions do not show.
+/// Directions that the motions do not show.
 DirectionBasis hidden_directions(const Problem& problem, const Matrix8d& Q, const DualQuaternion& T_a_b,
                                  ErrorCorrelation errors = ErrorCorrelation::correlated,
                                  const ObservabilityOptions& options = {});
-/// Those along which the cost is flat up to rounding: the minimum is not unique, any point along them is one.
+/// Directions along which the cost is flat up to rounding: the minimum is not unique, any point along them is
+/// one.
 DirectionBasis flat_directions(const Matrix8d& Q, const DualQuaternion& T_a_b);
 
 }  // namespace egocal

@@ -126,8 +126,9 @@ bool BagRecording::begins_at_zero(const Usable& first, const Usable& second) {
          most_ns;
 }
 
-/// At the time of its header; at that of recording where no message of the stream has another. A simulation
-/// that begins at zero has one message that looks unstamped, at its beginning: the second one decides.
+/// Takes a pose at the time of its header, or at that of recording where no message of the stream has
+/// another. A simulation that begins at zero has one message that looks unstamped, at its beginning: the
+/// second one decides.
 void BagRecording::take_usable(const Usable& usable, std::size_t stream, const TakePose& take) {
   if (stream >= stamps_.size()) stamps_.resize(stream + 1);
   Stamps& stamps = stamps_[stream];

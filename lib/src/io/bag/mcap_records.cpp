@@ -25,7 +25,7 @@ struct ChunkHead {
   std::size_t size = 0;  ///< of the head itself [bytes]
 };
 
-/// False where the head contradicts itself.
+/// Reads the head of a chunk; false where the head contradicts itself.
 bool parse_chunk(ByteSpan content, ChunkHead& head) {
   LittleEndian from(content);
   const std::uint64_t start = from.u64(), end = from.u64();

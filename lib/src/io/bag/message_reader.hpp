@@ -32,10 +32,10 @@ struct BagMessage {
 class MessageReader {
  public:
   virtual ~MessageReader() = default;
-  /// False at the end.
+  /// Reads the next message; false at the end.
   virtual bool next(BagMessage& message) = 0;
   virtual void rewind() = 0;
-  /// Grows while messages are read.
+  /// Topics met so far: they grow while messages are read.
   const std::vector<BagTopic>& topics() const { return topics_; }
   const ReadLosses& losses() const { return losses_; }
 

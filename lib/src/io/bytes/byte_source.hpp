@@ -29,7 +29,7 @@ class ByteSource {
   ByteSource& operator=(const ByteSource&) = delete;
 
   const std::string& file() const { return file_; }
-  /// Also of a file that is not unpacked on the way (xz). Nothing: a plain file.
+  /// How the file is packed, also where it is not unpacked on the way (xz). Empty: a plain file.
   const std::optional<Packing>& packing() const { return packing_; }
 
   /// The next `size` bytes, fewer only at the end. Valid until the next call of peek() or skip().
@@ -40,7 +40,7 @@ class ByteSource {
   std::uint64_t offset() const { return window_offset_ + position_; }
   /// Bytes of the whole file where that is known: a plain file on a disk; otherwise 0.
   std::uint64_t plain_size() const { return unpacker_ ? 0 : size_; }
-  /// At the end: what a packed file that is damaged or cut off has lost; once until rewind().
+  /// Counts, at the end, what a packed file that is damaged or cut off has lost; once until rewind().
   void count_unpacking(ReadLosses& losses);
   /// "holds no data", and why where unpacking has failed: for a file in which nothing was found.
   std::string why_empty() const;

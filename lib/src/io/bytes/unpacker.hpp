@@ -21,17 +21,17 @@ class Unpacker {
   virtual ~Unpacker() = default;
   virtual Step unpack(std::span<const unsigned char> from, std::span<unsigned char> to) = 0;
   virtual void restart() = 0;
-  /// At the end of a packed stream (several may follow each other), where a file may end.
+  /// Whether a packed stream is at its end (several may follow each other), where a file may end.
   virtual bool complete() const = 0;
 };
 
-/// For a whole file by its first bytes: gzip, zstd, bzip2 or lz4; empty for anything else.
+/// The unpacker for a whole file by its first bytes: gzip, zstd, bzip2 or lz4; empty for anything else.
 std::unique_ptr<Unpacker> make_unpacker(std::span<const unsigned char> first_bytes);
-/// By the name that bags use: "zstd", "lz4", "bz2". Empty for an unknown name.
+/// The unpacker by the name that bags use: "zstd", "lz4", "bz2". Empty for an unknown name.
 std::unique_ptr<Unpacker> make_unpacker(std::string_view name);
 
-/// All of `packed`, at most `most` bytes of it. False where it is damaged, cut off or longer than that; `out`
-/// then holds what could be unpacked. Memory grows with what comes out, whatever a file claims.
+/// Unpacks all of `packed` to at most `most` bytes. False where it is damaged, cut off or longer than that;
+/// `out` then holds what could be unpacked. Memory grows with what comes out, whatever a file claims.
 bool unpack_all(Unpacker& unpacker, std::span<const unsigned char> packed, std::size_t most,
                 std::vector<unsigned char>& out);
 

@@ -25,7 +25,7 @@ std::string one_line(std::string text) {
   return text;
 }
 
-/// Without its full stop: more follows.
+/// The sentence without its full stop: more follows.
 std::string unfinished(std::string sentence) {
   if (sentence.ends_with('.')) sentence.pop_back();
   return sentence;
@@ -51,7 +51,7 @@ std::string not_shown(const NamedExtrinsic& extrinsic, bool mixed) {
   return text;
 }
 
-/// Whose lengths are not multiplied.
+/// The frame of the sensor whose lengths are not multiplied.
 const std::string& unscaled_frame(const NamedExtrinsic& named) {
   return named.scale->sensor == named.parent ? named.child : named.parent;
 }

@@ -31,11 +31,11 @@ struct ExtrinsicWords {
 
 /// The directions of one kind by name: {"z", "yaw"}.
 std::vector<std::string> directions_with(const NamedExtrinsic& extrinsic, Backing backing);
-/// Those that the motions do not show, of the nominal value or of nothing.
+/// Directions that the motions do not show: those of the nominal value or of nothing.
 std::vector<std::string> not_observable(const NamedExtrinsic& extrinsic);
-/// What is known of each, by standard deviations where nothing else is.
+/// What the number of each direction rests on, by standard deviations where nothing else is known.
 std::array<Backing, 6> backing_of(const NamedExtrinsic& extrinsic);
-/// The frame that its directions are of.
+/// The frame that the directions of the extrinsic are of.
 const std::string& backing_frame(const NamedExtrinsic& extrinsic);
 
 /// Text in quotes for JSON and YAML.
