@@ -106,7 +106,7 @@ void describe_creep(const TestedDrive& drive, const FoundChange& found, Move& mo
   move.latest = seconds(drive, drive.pairs[found.to - 1].end_us);
 }
 
-/// False where a large turn is not credible.
+/// Describes a step; false where a large turn is not credible.
 bool describe_step(const TestedDrive& drive, const FoundChange& found, Move& move) {
   DualQuaternion before = minimiser_of(drive, found.from, found.at),
                  after = minimiser_of(drive, found.at, found.to);

@@ -53,7 +53,7 @@ struct Gated {
 Gated gated_blocks(std::span<const MotionPair> pairs, const Problem& problem, std::size_t blocks,
                    const ChangeTestOptions& options);
 
-/// Empty blocks where there is no motion.
+/// The motions in linear blocks; no blocks where there is no motion.
 Linearised linearise(std::span<const MotionPair> pairs, const Problem& problem, std::size_t blocks,
                      const ChangeTestOptions& options);
 

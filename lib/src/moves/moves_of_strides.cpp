@@ -31,7 +31,7 @@ Pairs between_neighbours(Pairs pairs, std::span<const Move> moves, std::size_t k
   return pairs.subspan(from, to - from);
 }
 
-/// False: the motions were tested and do not show it.
+/// Whether these motions show the move too; false only where they were tested and do not.
 bool shown_by(Pairs pairs, const Problem& problem, const Move& move, std::int64_t origin_us,
               const MovesOptions& options) {
   const std::int64_t time_us = origin_us + static_cast<std::int64_t>(second_us * move.time);

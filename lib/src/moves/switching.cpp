@@ -131,7 +131,7 @@ std::vector<bool> without_single_ones(const std::vector<bool>& sides) {
   return smooth;
 }
 
-/// With blocks of this number.
+/// The switching with this number of blocks.
 std::optional<Switching> switching_of(std::span<const MotionPair> pairs, const Problem& problem,
                                       std::size_t count, const SwitchingOptions& options) {
   const Linearised all = linearise(pairs, problem, count, options.test);

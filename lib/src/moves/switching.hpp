@@ -34,7 +34,8 @@ struct Switching {
   double left = 1;  ///< as most_left
 };
 
-/// Empty: one extrinsic suits the blocks, or two do not suit them far better. Spatial mode only.
+/// Two extrinsics between which the mount switches. Empty: one extrinsic suits the blocks, or two do not suit
+/// them far better. Spatial mode only.
 std::optional<Switching> find_switching(std::span<const MotionPair> pairs, const Problem& problem,
                                         const SwitchingOptions& options = {});
 

@@ -129,7 +129,8 @@ Answer detail::solve_and_verify(const Problem& problem, const Matrix8d& Q, Metho
 
 namespace {
 
-/// Empty: the motions show every direction, or the minimum is at the prior.
+/// The cost that is held at the prior in hidden directions. Empty: the motions show every direction, or the
+/// minimum is at the prior.
 std::optional<detail::HeldCost> held(const Problem& problem, const Matrix8d& Q, const Answer& minimum) {
   if (!problem.prior || problem.mode == Mode::planar || minimum.status != SolverStatus::converged)
     return std::nullopt;

@@ -346,7 +346,7 @@ Problem Accumulator::problem() const {
   return corrected ? *std::move(corrected) : problem;
 }
 
-/// Before rotation noise is taken off.
+/// The problem before rotation noise is taken off.
 Problem Accumulator::plain_problem() const {
   if (!sums_ || !sums_->in_force()) return single_stride_problem();
   Problem problem = empty_problem();

@@ -37,7 +37,7 @@ class SumsSchedule {
   }
 
  private:
-  /// After which part more than this number of instants the next choice follows.
+  /// The divisor n by which the next choice follows after 1 / n of this number of instants more.
   std::uint64_t part(std::uint64_t instants) const {
     return instants < short_drive_ ? short_part_ : long_part_;
   }

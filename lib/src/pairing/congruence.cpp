@@ -54,7 +54,7 @@ struct Remembered {
     }
   }
 
-  /// Without motions smaller than `least`.
+  /// Omits motions smaller than `least`.
   void leave_out_smaller(double least) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < sizes.size();

@@ -18,7 +18,7 @@ struct Corner {
   double before_us = 0, after_us = 0;  ///< their times
 };
 
-/// Empty where a neighbour is too far away.
+/// The corner of the path at a pose; empty where a neighbour is too far away.
 std::optional<Corner> corner_at(const Neighbours& neighbours, std::int64_t max_gap_us) {
   const StampedPose& pose = neighbours.pose;
   const std::int64_t before_us = pose.time_us - neighbours.before.time_us,

@@ -59,7 +59,7 @@ MatchedSamples row_by_row(const Trajectory& a, const Trajectory& b) {
   return matched;
 }
 
-/// Between poses `apart` rows apart [rad].
+/// Median turn between poses `apart` rows apart [rad].
 double median_turn(const Trajectory& trajectory, std::size_t apart) {
   std::vector<double> turns;
   for (std::size_t i = apart; i < trajectory.size(); ++i)

@@ -79,7 +79,7 @@ std::vector<MotionPair> MotionPairing::finish() {
   return pairs;
 }
 
-/// Before answers are asked for.
+/// Settles the accumulator; called before answers are asked for.
 void MotionPairing::settle() {
   accumulator_.settle();
   early_is_old_ = !early_ || early_->newest_us() != accumulator_.newest_us();

@@ -22,7 +22,7 @@ bool one_repeats(const Instant& before, const Instant& now, double repeated) {
   return repeats(before.a, now.a) != repeats(before.b, now.b);
 }
 
-/// In periods, at least one.
+/// Time between two instants in periods, at least one.
 double steps(const Instant& from, const Instant& to, double period_us) {
   return std::max(1.0, static_cast<double>(to.time_us - from.time_us) / period_us);
 }

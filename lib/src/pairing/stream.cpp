@@ -43,7 +43,7 @@ std::size_t Stream::unconfirmed() const {
   return state_.patient && numbered ? state_.candidates.size() : 0;
 }
 
-/// With those that wait behind a gap; newest_us is known.
+/// The newest time of all poses, with those that wait behind a gap; newest_us is known.
 std::int64_t Stream::newest_us_of_all() const {
   return state_.early.empty() ? *state_.newest_us : detail::newest_time(state_.early);
 }

@@ -12,7 +12,7 @@
 /// What the files of Stream share.
 namespace egocal::detail {
 
-/// In StreamState::recent: nothing yet.
+/// Marks a place in StreamState::recent that holds nothing yet.
 constexpr std::int64_t no_time = std::numeric_limits<std::int64_t>::min();
 
 inline std::int64_t microseconds(double seconds) {
@@ -23,7 +23,7 @@ inline std::int64_t microseconds(double seconds) {
 /// overflow.
 bool possible(const NumberedPose& sample);
 
-/// They are recorded in the order in which they were sent.
+/// Whether two poses were recorded in the order in which they were sent.
 bool sent_in_order(const NumberedPose& x, const NumberedPose& y);
 
 void append(std::vector<NumberedPose>& out, std::vector<NumberedPose> more);

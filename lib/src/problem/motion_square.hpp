@@ -61,7 +61,7 @@ struct SquareWeights {
 class MotionSquare {
  public:
   MotionSquare() = default;  ///< unset
-  /// For the signs of a and b that make their scalars >= 0.
+  /// The square for the signs of a and b that make their scalars >= 0.
   MotionSquare(const DualQuaternion& a, const DualQuaternion& b);
 
   /// Adds it, multiplied by eta. in_pairs: as on processors without wide vectors, for tests.

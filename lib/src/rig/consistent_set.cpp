@@ -54,7 +54,7 @@ JointPair turned_round(const JointPair& pair) {
   return result;
 }
 
-/// With the sensors 0 and `reference` exchanged, a < b, and each pair's minimum made 1.
+/// Exchanges the sensors 0 and `reference`, with a < b, and makes each pair's minimum 1.
 void prepare(std::vector<JointPair>& pairs, std::size_t reference) {
   const auto exchanged = [&](std::size_t s) { return s == 0 ? reference : s == reference ? 0 : s; };
   for (JointPair& pair : pairs) {

@@ -75,7 +75,8 @@ struct JointProof {
   bool global = false;     ///< the minimum is proven to be global, up to the rest of its gradient
 };
 
-/// Empty where not even the bounds of the pairs are proven. Unit poses, up to rounding.
+/// Proves what it can of a joint minimum. Empty where not even the bounds of the pairs are proven. poses:
+/// unit, up to rounding.
 std::optional<JointProof> prove_joint_minimum(std::span<const JointPair> pairs,
                                               const std::vector<DualQuaternion>& poses);
 

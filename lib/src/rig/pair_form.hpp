@@ -74,9 +74,9 @@ class Form {
   double error_of(const Vector8& x, const Vector8& y) const {
     return error_of(length(x, 0, 4), length(x, 4, 8), length(y, 0, 4), length(y, 4, 8));
   }
-  /// At least (m x)'Z (m x).
+  /// An upper bound of (m x)'Z (m x).
   double at_most(const Vector8& x) const { return std::max(0.0, at(x, x)) + error_of(x, x); }
-  /// At least the same for every x = (0, v), |v| = 1.
+  /// An upper bound of the same for every x = (0, v), |v| = 1.
   double dual_at_most() const { return size_dd_ * upwards; }
 
  private:

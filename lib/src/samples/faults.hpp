@@ -17,7 +17,7 @@ constexpr std::size_t least_units = 3;
 /// Finding too_little_motion: fewer than least_units.
 Finding too_few_poses(std::size_t units);
 
-/// When turns say nothing.
+/// When the turns of a set say nothing.
 struct SmallTurnOptions {
   /// Three quarters of the motions turn by less than this in both lists [rad]: 3 degrees, where a set
   /// wants 20.

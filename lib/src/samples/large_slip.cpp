@@ -35,7 +35,7 @@ Change change_of(const DualQuaternion& from, const DualQuaternion& to) {
   return {(other.translation - one.translation).norm(), one.rotation.angularDistance(other.rotation)};
 }
 
-/// Empty parts, or such of too few units: a gain of 0.
+/// The division of the samples at this place. A part that is empty or has too few units: a gain of 0.
 Division divided(const SampleSet& set, const SampleFit& all, const std::vector<std::size_t>& order,
                  std::size_t at, const FitSettings& settings, const LargeSlipOptions& tuning) {
   const auto middle = order.begin() + static_cast<std::ptrdiff_t>(at);

@@ -15,7 +15,7 @@ namespace egocal::detail {
 /// The samples as understood by the readings, unit and with canonical signs.
 std::vector<PoseSample> reread(std::span<const PoseSample> samples, const PoseReading& read_a,
                                const PoseReading& read_b);
-/// By those of the options.
+/// The samples as understood by the readings of the options.
 std::vector<PoseSample> reread(std::span<const PoseSample> samples, const Reading& read_a,
                                const Reading& read_b);
 

@@ -18,8 +18,8 @@ Eigen::Vector3d position(const DualQuaternion& q) {
   return 2 * quaternion_product(q.dual, quaternion_conjugate(q.real)).tail<3>();
 }
 
-/// Sums over samples about their mean: all motions between two samples, divided by their number. Positions
-/// are taken from `origin`: there 2 |y.dual| is the distance, whatever the rotation of y.
+/// Sums over samples about their mean: all motions between two samples, divided by the number of samples.
+/// Positions are taken from `origin`: there 2 |y.dual| is the distance, whatever the rotation of y.
 Statistics centred(const SampleSet& set, std::span<const std::size_t> chosen,
                    const std::vector<double>& signs, const Eigen::Vector3d& origin) {
   QuaternionVector t;
@@ -108,8 +108,8 @@ SampleNoise noise_from(const SumOfSquares& squares, double length, const FitSett
   return noise;
 }
 
-/// From the residuals themselves: of exact samples the quadratic forms hold nothing but rounding of either
-/// sign. Each times its weight.
+/// Squares about the mean from the residuals themselves: of exact samples the quadratic forms hold nothing
+/// but rounding of either sign. Each residual's square is multiplied by its weight.
 SumOfSquares squares_about_mean(const SampleSet& set, std::span<const std::size_t> chosen,
                                 const std::vector<double>& signs, const Eigen::Vector3d& origin,
                                 const DualQuaternion& X, const std::vector<double>& weights) {
@@ -213,7 +213,7 @@ class Rounds {
     for (std::size_t k = 0; k < chosen_.size(); ++k) sums_.add(set_.sums(chosen_[k]), signs_[k]);
   }
 
-  /// True where nothing moved that matters. exact: from the samples, not from their sums.
+  /// One round; true where nothing moved that matters. exact: from the samples, not from their sums.
   bool once(bool exact) {
     const double length = set_.length();
     fit_.statistics = exact ? centred(set_, chosen_, signs_, origin_) : sums_.centred(origin_);

@@ -70,7 +70,7 @@ SquaredResidual squared_residual(const SampleSet& set, std::size_t i, const Samp
 /// Squared residuals of one noise over those of another, rotation and position alike.
 double improvement(const SampleNoise& given, const SampleNoise& other);
 double improvement(const SampleFit& given, const SampleFit& other);
-/// Not the same minimum again but for rounding.
+/// Whether `one` is better by more than rounding, and so not the same minimum again.
 bool clearly_better(const SampleFit& one, const SampleFit& other);
 
 /// The mean of the targets that the chosen samples see with this X; `fit` gives the signs.

@@ -32,9 +32,9 @@ class TrimmedSearch {
  public:
   TrimmedSearch(const SampleSet& set, const SampleOptions& options, const AgreeingOptions& tuning);
 
-  /// From the fit of all samples.
+  /// The trimmed fit that starts from the fit of all samples.
   TrimmedFit from_all() const;
-  /// The best one from triples of samples.
+  /// The best trimmed fit that starts from triples of samples.
   TrimmedFit best() const;
 
  private:

@@ -32,7 +32,7 @@ struct ScaleDerivatives {
   Gradient gradient;
   Hessian hessian;
 
-  /// With the best extrinsic at each scale.
+  /// Derivatives over u, with the best extrinsic at each scale.
   struct OverScale {
     double curvature = 0;  ///< second derivative of J over u; 0 where the extrinsic is at no minimum
     std::array<double, 6> sensitivity{};  ///< change of the extrinsic per change of u

@@ -20,8 +20,8 @@ struct ScaleBlock {
 /// The scale of some samples; 0 where they show none.
 double estimate(std::span<const ScaleSample> samples);
 
-/// At most `count`, which all show the scale about equally well, however long a vehicle stands or turns in
-/// place meanwhile. Empty where one of them shows no scale.
+/// At most `count` blocks, which all show the scale about equally well, however long a vehicle stands or
+/// turns in place meanwhile. Empty where one of them shows no scale.
 std::vector<ScaleBlock> blocks_of(std::span<const ScaleSample> samples, std::size_t count);
 
 /// Weighted least squares over blocks.

@@ -39,8 +39,8 @@ Pose mounting_at(const SimulationOptions& options, std::size_t sensor, double ti
   return mounting;
 }
 
-/// Between the second and the third of four values at equal distances: a cubic, whose slope at both is that
-/// between their neighbours, so that the path has no corner at a pose.
+/// A value between the second and the third of four at equal distances: by a cubic, whose slope at both is
+/// that between their neighbours, so that the path has no corner at a pose.
 Eigen::Vector3d between(const std::array<Eigen::Vector3d, 4>& values, double part) {
   const Eigen::Vector3d chord = values[2] - values[1];
   const Eigen::Vector3d begin = 0.5 * (values[2] - values[0]), end = 0.5 * (values[3] - values[1]);
@@ -48,7 +48,7 @@ Eigen::Vector3d between(const std::array<Eigen::Vector3d, 4>& values, double par
   return values[1] + part * chord + part * rest * (rest * (begin - chord) - part * (end - chord));
 }
 
-/// Between poses `next` - 1 and `next`; beyond the ends the path is straight.
+/// The pose between poses `next` - 1 and `next`; beyond the ends the path is straight.
 Pose pose_between(const Path& path, std::size_t next, double part) {
   const auto pose = [&](std::size_t i) -> const Pose& { return path.poses[i]; };
   const Pose& from = pose(next - 1);

@@ -11,7 +11,7 @@ namespace egocal::detail {
 
 struct ProvenSolution {
   Solution solution;
-  /// In units of length_scale(Q); empty where the answer is not proven, or by another proof.
+  /// The bound in units of length_scale(Q); empty where the answer is not proven, or by another proof.
   std::optional<ProvenBound> proven;
 };
 

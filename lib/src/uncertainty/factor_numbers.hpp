@@ -4,7 +4,7 @@
 // bits. Included once for each kind of Number, within a namespace that defines it, positive() and place(),
 // where the number of row i and column j <= i is; see problem/square_numbers.hpp.
 
-/// In place: L below the diagonal, the inverse of D on it. False where a pivot is not positive.
+/// Factorises in place: L below the diagonal, the inverse of D on it. False where a pivot is not positive.
 [[gnu::always_inline]] inline bool factorise_leading(Number* const a, const int n) {
   EGOCAL_STRAIGHT
   for (int j = 0; j < n; ++j) {

@@ -45,7 +45,7 @@ class Jackknife {
   Vector6d spread() const {
     return (squares_ - 2 * sum_.cwiseProduct(cross_) + sum_.cwiseAbs2() * weights_) / count_;
   }
-  /// With Student's factor: 1.96 of its roots cover 95 % whatever the number of blocks.
+  /// The variance with Student's factor: 1.96 of its roots cover 95 % whatever the number of blocks.
   Vector6d variance() const {
     const double student = student_factor(count_ - 1);
     return student * student * spread();
@@ -97,10 +97,11 @@ class Jackknife {
   double error_of_sum(double m) const {
     return std::sqrt(static_cast<double>(most_lag)) * error_of_independent(m);
   }
-  /// For the standard deviations, where few of the n blocks hold all that is known of a direction (one turn
-  /// in the drive): m = (sum of c)^2 / sum of c^2 equal blocks are as concentrated. The factor is Student's
-  /// for about m degrees of freedom (Satterthwaite 1946), times the root of (m - 1) / m to (n - 1) / n, the
-  /// part by which the jack-knife over m overestimates. One where all blocks hold alike.
+  /// Factor of the standard deviations where few of the n blocks hold all that is known of a direction (one
+  /// turn in the drive): m = (sum of c)^2 / sum of c^2 equal blocks are as concentrated. The factor is
+  /// Student's for about m degrees of freedom (Satterthwaite 1946), times the root of the ratio of (m - 1) /
+  /// m to (n - 1) / n, the part by which the jack-knife over m overestimates. One where all blocks hold
+  /// alike.
   Vector6d concentration(double least_equal_blocks) const {
     Vector6d factor;
     for (int i = 0; i < 6; ++i) {
@@ -171,7 +172,7 @@ class Jackknife {
     double variance(int part) const {
       return squares[part] - sum[part] * sum[part] / static_cast<double>(count);
     }
-    /// Not where a block cannot be omitted.
+    /// Whether omitting blocks changes this part; false where a block cannot be omitted.
     bool changes(int part) const { return variance(part) > 0 && std::isfinite(variance(part)); }
     /// Correlation at this lag; there must be more blocks than it. Empty: nothing changes, or a block cannot
     /// be omitted.

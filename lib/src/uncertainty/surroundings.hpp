@@ -63,7 +63,7 @@ Vector6d variance_of_hidden(const Surroundings& around, bool has_prior, const Ob
 Vector6d pull_of_noise(const Surroundings& around, const Eigen::Vector3d& t,
                        const Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>& seen);
 
-/// In units of the length of q.
+/// The translation of q, in units of the length of q.
 Eigen::Vector3d translation_of(const DualQuaternion& q);
 
 }  // namespace egocal::detail

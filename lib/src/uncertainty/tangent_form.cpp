@@ -93,7 +93,7 @@ bool positive(double x) {
   return x > 0;
 }
 
-/// In a Matrix6d.
+/// Place of an entry in a Matrix6d.
 constexpr int place(int i, int j) {
   return 6 * j + i;
 }

@@ -66,8 +66,8 @@ class TangentSpace {
  public:
   TangentSpace(const DualQuaternion& q, double length, const Matrix86d& tangent, const Balance& balance);
 
-  /// Its curvature is that of Z = S - lambda_1 [I 0; 0 0] + lambda_2 [0 I; I 0] at the least squares
-  /// multipliers, which are linear in S as well.
+  /// The form of the cost of these statistics. Its curvature is that of Z = S - lambda_1 [I 0; 0 0] +
+  /// lambda_2 [0 I; I 0] at the least squares multipliers, which are linear in S as well.
   TangentForm form(const Statistics& statistics) const;
   /// Whether the first three directions do not rotate.
   bool starts_with_translations() const { return starts_with_translations_; }

@@ -106,7 +106,7 @@ bool is_blank(std::string_view text) {
   return text.find_first_not_of(" \t\r") == std::string_view::npos;
 }
 
-/// Between blanks or tabs there are numbers only, some with a decimal comma.
+/// Whether there are only numbers between blanks or tabs, some with a decimal comma.
 bool has_commas_in_numbers(std::string_view line) {
   std::vector<std::string_view> fields;
   split(line, ' ', fields);

@@ -27,7 +27,7 @@ char separator_of(const Sniffed& sniffed, const std::string& columns);
 /// Names instead of numbers: the first field is a word, and so are most of the others.
 bool is_header(std::string_view line, char separator);
 
-/// In the numbers of a file that has no decimal point.
+/// Whether the numbers have decimal commas, in a file that has no decimal point.
 bool has_decimal_commas(const Sniffed& sniffed, char separator);
 
 bool is_number(std::string_view text);

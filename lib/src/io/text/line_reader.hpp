@@ -9,9 +9,8 @@
 
 namespace egocal::detail {
 
-/// By which of these characters the lines of a text end, from its beginning on: LF (also CR LF); CR where
-/// there is no LF; either where more lines end by a CR than by an LF: a header was put above rows that end by
-/// CR.
+/// The characters that end the lines of a text, from its beginning on: LF (also CR LF); CR where there is no
+/// LF; either where more lines end by a CR than by an LF: a header was put above rows that end by CR.
 std::string_view line_ends_of(ByteSource& source);
 
 /// The first line of a text. Without an end, `whole` is its size.
@@ -27,8 +26,8 @@ class LineReader {
  public:
   explicit LineReader(ByteSource& source) : source_(source) {}
 
-  /// False at the end. The line is valid until the next call. Throws Error for a line above 1 MiB, which no
-  /// text has.
+  /// Reads the next line; false at the end. The line is valid until the next call. Throws Error for a line
+  /// above 1 MiB, which no text has.
   bool next(std::string_view& line);
   long number() const { return number_; }          ///< of the line handed out last, from 1
   bool terminated() const { return terminated_; }  ///< it had a line end

@@ -50,7 +50,7 @@ TextRecording::TextRecording(std::unique_ptr<ByteSource> source, ReadOptions opt
         "; call the column yaw if it is not");
 }
 
-/// All of the file counts: a drive may begin straight.
+/// Finds the unit of the angles by all of the file: a drive may begin straight.
 void TextRecording::find_angle_unit() {
   using enum Quantity;
   if (layout_.columns.has_quaternion()) return;
@@ -194,7 +194,7 @@ bool TextRecording::may_end_in_a_cut_number(const TextRows& rows) const {
   return true;
 }
 
-/// Empty: the row is skipped and counted.
+/// The pose of a row; empty where the row is skipped and counted.
 std::optional<StampedPose> TextRecording::pose_of_row(const TextRows& rows) {
   const std::size_t n = rows.fields.size();
   const auto skip = [&](const char* why) {
@@ -328,7 +328,7 @@ DualQuaternion TextRecording::pose_of_matrix(const TextRows& rows) const {
   return pose.pose;
 }
 
-/// Empty: the time does not increase.
+/// The pose after a row of velocities; empty where the time does not increase.
 std::optional<DualQuaternion> TextRecording::pose_of_twist(const TextRows& rows, std::int64_t time_us) {
   using enum Quantity;
   Twist twist;

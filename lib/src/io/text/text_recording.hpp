@@ -43,7 +43,7 @@ class TextRecording : public Recording {
   CheckedPose pose_of_columns(const TextRows& rows);
   std::optional<DualQuaternion> pose_of_twist(const TextRows& rows, std::int64_t time_us);
   double value(const TextRows& rows, std::size_t index) const;
-  /// In m, rad, m/s; in_si: of a unit that is not given.
+  /// The value of a quantity in m, rad, m/s. in_si: of a unit that is not given.
   double value(const TextRows& rows, Quantity quantity, double in_si = 1) const;
   double angle(const TextRows& rows, Quantity quantity) const;
 

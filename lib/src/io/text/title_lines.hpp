@@ -20,7 +20,7 @@ struct TitleLines {
 /// columns: of the option; they tell what a row is.
 TitleLines title_lines(const Sniffed& sniffed, char separator, const std::string& columns);
 
-/// Without those lines, and with the names as the header where they are wanted.
+/// Takes the title lines out, and puts the names in as the header where they are wanted.
 void replace_titles(Sniffed& sniffed, const TitleLines& titles, bool named);
 
 }  // namespace egocal::detail

@@ -68,7 +68,7 @@ std::vector<LagSearch::Complex> LagSearch::packed(const Series& series, bool squ
   return values;
 }
 
-/// In place, radix 2. Back: without the division by the size.
+/// Fourier transform in place, radix 2. back: the inverse one, without the division by the size.
 void LagSearch::transform(std::vector<Complex>& values, bool back) const {
   for (std::size_t i = 1, j = 0; i < size_; ++i) {
     std::size_t bit = size_ >> 1;

@@ -15,10 +15,10 @@ class LineFit {
     ty_ += time * offset;
   }
   double points() const { return n_; }
-  /// False where all points have one time.
+  /// Whether the points determine a line; false where all of them have one time.
   bool determined() const { return determinant() > 0; }
   double slope() const { return (n_ * ty_ - t_ * y_) / determinant(); }
-  /// At time zero, for a slope that may be limited.
+  /// Value of the line at time zero, for a slope that may be limited.
   double level(double slope) const { return (y_ - slope * t_) / n_; }
 
  private:

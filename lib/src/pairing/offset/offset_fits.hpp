@@ -39,7 +39,7 @@ class OffsetFits {
     double sigmas = 0;  ///< Student's t of the gains of the parts of the drive
     double chance = 1;  ///< of as much where both fit equally well
   };
-  /// Empty where they have too little in common.
+  /// Compares two clocks; empty where they have too little in common.
   std::optional<Comparison> compare(std::size_t first, std::size_t second) const;
 
   std::size_t size() const { return fits_.size(); }

@@ -17,7 +17,7 @@ std::optional<DualQuaternion> pose_at(const Trajectory& trajectory, std::int64_t
                                       double max_gap_us, std::size_t& from,
                                       const SynchroniserOptions& options = {});
 
-/// Where to begin looking for a time.
+/// Index of the pose from which to look for a time.
 std::size_t first_before(const Trajectory& trajectory, std::int64_t at_us, double time_us);
 
 }  // namespace egocal::detail

@@ -47,7 +47,7 @@ class Refinement {
 
   void begin(const ClockLine& model, double arm_us);
   const std::optional<TimeOffset>& result() const { return result_; }
-  /// Where it ended; with a result only.
+  /// The clock at which the refinement ended; with a result only.
   const ClockLine& clock() const { return model_; }
   const DualQuaternion& extrinsic() const { return *q_; }
 
