@@ -41,7 +41,7 @@ using detail::with_rounding;
 
 namespace {
 
-/// Mode, planes, balance and prior; no motions yet.
+/// The problem with mode, planes, balance and prior, and no motions yet.
 Problem formulation(const PairingOptions& options) {
   Problem problem;
   problem.mode = options.mode;

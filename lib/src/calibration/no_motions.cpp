@@ -18,7 +18,8 @@ namespace {
 /// Streams of one drive hardly differ more in length; other units of time differ by a thousand.
 constexpr double other_unit = 100;  // limit of a hint
 
-/// Other units, or other clocks, such as the time since the start of a log beside that since 1970.
+/// Says where the times are in other units, or of other clocks, such as the time since the start of a log
+/// beside that since 1970.
 std::string times_in_words(const Trajectory& a, const Trajectory& b) {
   if (a.empty() || b.empty()) return "";
   const auto lasts = [](const Trajectory& x) {
@@ -36,7 +37,8 @@ std::string times_in_words(const Trajectory& a, const Trajectory& b) {
   return "; their times do not overlap: {solve}--time-offset auto if they are of one drive";
 }
 
-/// Streams that are too slow for the longest gap that is interpolated over, where that left no motions.
+/// Says where the streams are too slow for the longest gap that is interpolated over, and that left no
+/// motions.
 std::string gaps_in_words(const Trajectory& a, const Trajectory& b, const PairingCounts& counts,
                           double max_gap) {
   if (counts.rejected[static_cast<std::size_t>(Rejection::gap)] == 0 || a.size() < 2 || b.size() < 2)

@@ -53,9 +53,10 @@ class DoubleProof {
   /// Reads only the lower triangle and the last column of the form.
   DoubleProof(const Square<8>& Q, const Column<8>& v, double cost, double bound, double orthogonal,
               const LocalForm& form);
-  /// J(q') >= bound for every q' with |r'| = 1 and r'd' = 0.
+  /// Whether this is proven: J(q') >= bound for every q' with |r'| = 1 and r'd' = 0.
   bool bound() const;
-  /// J(q') - bound is at least c.rotation |p_v|^2, and at least c.translation |p_dv|^2, and not negative.
+  /// Whether this is proven: J(q') - bound is at least c.rotation |p_v|^2, and at least c.translation
+  /// |p_dv|^2, and not negative.
   bool curvatures(const Curvatures& c) const;
 
  private:

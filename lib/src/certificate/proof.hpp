@@ -118,13 +118,14 @@ ExtendedSquare<N> reordered_lagrangian(const Square<N>& Q, Extended bound, Exten
   return Z;
 }
 
-/// J(q') + lift |d'|^2 >= bound for every q' with |r'| = 1 and r'd' = 0.
+/// Whether this is proven: J(q') + lift |d'|^2 >= bound for every q' with |r'| = 1 and r'd' = 0.
 template <int N>
 bool proven_bound(const Square<N>& Q, double bound, double orthogonal, double lift) {
   return proven_semidefinite<N>(reordered_lagrangian<N>(Q, bound, orthogonal, lift));
 }
 
-/// No cost is negative by more than its rounding: Q is a sum of squares, as far as it is known.
+/// Whether this is proven: no cost is negative by more than its rounding. Q is a sum of squares, as far as it
+/// is known.
 template <int N>
 bool proven_sum_of_squares(const Square<N>& Q, const Sizes& sizes) {
   ExtendedSquare<N> M = reordered_lagrangian<N>(Q, 0, 0, 0);

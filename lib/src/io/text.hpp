@@ -42,7 +42,7 @@ bool is_missing_number(std::string_view text);
 
 /// The number that fills the whole text. False where there is none; it may be infinite or NaN.
 bool parse_number(std::string_view text, double& value);
-/// "1,25": a number of a country that writes decimals so.
+/// Whether this is a number like "1,25", of a country that writes decimals so.
 bool has_decimal_comma(std::string_view text);
 /// A finite number. Throws Error naming file, line and field.
 double number(const std::string& file, long line, const std::string& field, std::string_view text);

@@ -172,7 +172,7 @@ WholeFile::~WholeFile() {
   if (!temporary_.empty()) unlink(temporary_.c_str());
 }
 
-/// Under the first name that `take` succeeds with.
+/// Takes the first temporary name that `take` succeeds with.
 void WholeFile::name_temporary(const std::function<bool(const char*)>& take) {
   for (int n = 0; temporary_.empty(); ++n) {
     const std::string name =

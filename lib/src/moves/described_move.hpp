@@ -14,7 +14,8 @@ std::size_t placed(const TestedDrive& drive, const FoundChange& found);
 /// Moves a change there, where that is within its stretch.
 void move_to_place(const TestedDrive& drive, FoundChange& found);
 
-/// When and what: place, extrinsics before and after. Empty where a large turn is not credible.
+/// The move of a change: its place and the extrinsics before and after. Empty where a large turn is not
+/// credible.
 std::optional<Move> described(const TestedDrive& drive, const FoundChange& found);
 
 }  // namespace egocal::detail

@@ -10,7 +10,7 @@
 
 namespace egocal::detail {
 
-/// Blocks on each side of a change, at least.
+/// Least number of blocks on each side of a change.
 std::size_t least_side(std::size_t blocks, const MovesOptions& options);
 
 enum class Shown { no, perhaps, clearly };

@@ -28,7 +28,7 @@ struct InterpolatedPart {
 };
 
 KeyStep step_of(const DualQuaternion& motion);
-/// Medians; zero where there are none.
+/// Medians of the steps; zero where there are none.
 KeyStep typical(const std::deque<KeyStep>& steps);
 
 /// The middle pose, which is paired with an interpolated one. With h the time between the two poses that are

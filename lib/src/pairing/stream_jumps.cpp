@@ -23,7 +23,7 @@ bool lost_between(const StreamState& state, const NumberedPose& next, const Stre
 
 }  // namespace
 
-/// y may be the message after x, or a few later.
+/// Whether y may be the message after x, or a few later.
 bool Stream::follows(const NumberedPose& x, const NumberedPose& y) const {
   const std::int64_t step = y.pose.time_us - x.pose.time_us;
   if (step <= 0 || step > detail::microseconds(options_.largest_confirming_step)) return false;

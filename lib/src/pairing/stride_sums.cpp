@@ -42,7 +42,7 @@ StrideSums::StrideSums(const PairingOptions& options, const StrideSumsOptions& t
   }
 }
 
-/// There is a gap between the two.
+/// Whether there is a gap between the two.
 bool StrideSums::too_long(const JudgedInstant& from, const JudgedInstant& to) const {
   const double longest_us = options_.accumulator.stretch * static_cast<double>(to.index - from.index) *
                             static_cast<double>(state_.period_us);
@@ -299,7 +299,7 @@ StrideBlocks& StrideSums::judge_open() {
   return all;
 }
 
-/// Blocks that contradict the others, by their motions within.
+/// Omits blocks that contradict the others, by their motions within.
 void StrideSums::leave_out_blocks(StrideBlocks& all) {
   all.leave_out(std::vector<std::uint8_t>(all.blocks(), 0));
   state_.outlier = all.state().outlier;

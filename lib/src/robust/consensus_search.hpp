@@ -29,7 +29,8 @@ class ConsensusSearch {
 
   Candidate fit(const std::vector<double>& factors) const;
 
-  /// Medians over the motion, not over time: a vehicle may be at rest for most of it.
+  /// Scale of the residuals by medians over the motion, not over time: a vehicle may be at rest for most of
+  /// it.
   ResidualScale scale_of(const Candidate& fit) const;
 
   double excess_of(const Candidate& fit, std::size_t i, const ResidualScale& scale) const;
@@ -41,7 +42,7 @@ class ConsensusSearch {
 
   double motion_of(const std::vector<double>& factors) const;
 
-  /// Solve over what agrees, until the same agree again.
+  /// Solves over what agrees, until the same parts agree again.
   Candidate settled(Candidate fit, const ResidualScale& scale) const;
 
   /// Graduated non-convexity (Yang et al. 2020) for the Geman-McClure loss: from the convex problem, all

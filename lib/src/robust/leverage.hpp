@@ -29,7 +29,7 @@ struct LeverageBound {
   double rotation_leverage = 0;  ///< sin^2(half the angle) <= this times w'Zw; proven
 };
 
-/// Empty: the kept parts do not show every direction, so nothing can be proven.
+/// What the leverages prove. Empty: the kept parts do not show every direction, so nothing can be proven.
 std::optional<LeverageBound> leverage_bound(std::span<const TruncatedPart> parts,
                                             const std::vector<bool>& outlier);
 

@@ -84,7 +84,7 @@ class AsGiven {
     few_of_all_ = some(samples, every, search);
   }
 
-  /// Is it sure that another reading is no better?
+  /// Whether it is sure that the other reading is no better.
   bool withstands(const Alternative& other) const {
     if (!hopeless(reread(few_, other.a, other.b), given_.fit, search_)) return false;
     return !all_ || hopeless(reread(few_of_all_, other.a, other.b), *all_, search_);

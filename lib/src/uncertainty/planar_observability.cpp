@@ -30,7 +30,7 @@ std::string hint_in_plane(const Surroundings& around, const ObservabilityOptions
   return planar_hint(translation, yaw, around.hidden);
 }
 
-/// pull_of_noise() [m, rad].
+/// pull_of_noise() in planar mode [m, rad].
 Vector6d pull_in_plane(const Problem& problem, const DualQuaternion& T_a_b, const Surroundings& around) {
   const DualQuaternion G_a = plane_frame(problem.plane_a);
   const DualQuaternion T_p = planar_from_extrinsic(T_a_b, G_a, plane_frame(problem.plane_b));

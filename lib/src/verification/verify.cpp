@@ -29,7 +29,8 @@ bool is_extrinsic(const DualQuaternion& q) {
          std::abs(q.real.dot(q.dual)) <= unit_tolerance * q.dual.norm();
 }
 
-/// Finite, far from underflow and overflow, and symmetric up to rounding: the proof reads one triangle.
+/// Whether Q is finite, far from underflow and overflow, and symmetric up to rounding: the proof reads one
+/// triangle.
 bool is_usable(const Matrix8d& Q) {
   if (!Q.allFinite()) return false;
   const double largest = Q.diagonal().cwiseAbs().maxCoeff();
@@ -84,7 +85,7 @@ bool is_planar(const DualQuaternion& q) {
   return rest <= unit_tolerance && rest_dual <= unit_tolerance * (1 + q.dual.norm());
 }
 
-/// Both triangles alike; the cost of every q stays what it is.
+/// Q with both triangles alike; the cost of every q stays what it is.
 Matrix8d symmetric(const Matrix8d& Q) {
   return 0.5 * (Q + Q.transpose());
 }

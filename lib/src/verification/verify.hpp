@@ -9,7 +9,7 @@
 
 namespace egocal::detail {
 
-/// Unit to the last digits: normalising it again would only move them.
+/// Whether q is unit to the last digits: normalising it again would only move them.
 inline bool unit_to_rounding(const DualQuaternion& q) {
   constexpr double tolerance = 4 * std::numeric_limits<double>::epsilon();
   return std::abs(q.real.squaredNorm() - 1) <= tolerance &&

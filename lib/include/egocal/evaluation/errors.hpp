@@ -6,12 +6,13 @@
 
 namespace egocal {
 
-/// (32): of the displacement between the truth and an estimate, both unit dual quaternions of either sign.
+/// Error (32): the size of the displacement between the truth and an estimate, both unit dual quaternions of
+/// either sign.
 struct ExtrinsicError {
   double translation = 0;  ///< [m]
   double rotation = 0;     ///< [0, pi] [rad]
 };
-/// Thread-safe. Exact for small errors.
+/// The error of an estimate. Exact for small errors. Thread-safe.
 ExtrinsicError extrinsic_error(const DualQuaternion& truth, const DualQuaternion& estimate);
 
 }  // namespace egocal

@@ -21,7 +21,7 @@ EGOCAL_SAME_LAYOUT(Pose)
 
 /// T_a_c = T_a_b * T_b_c.
 Pose operator*(const Pose& T_a_b, const Pose& T_b_c);
-/// T_b_a.
+/// The inverse, T_b_a.
 Pose inverse(const Pose& T_a_b);
 Eigen::Vector3d operator*(const Pose& T_a_b, const Eigen::Vector3d& p_b);
 

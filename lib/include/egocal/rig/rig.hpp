@@ -25,7 +25,8 @@ EGOCAL_SAME_LAYOUT(RigEdge)
 
 /// Poses of all sensors that fit all pairs best.
 struct ConsistentSet {
-  /// False where the pairs do not connect all sensors, or a cost matrix is not usable; nothing else is set.
+  /// Whether poses were found. False where the pairs do not connect all sensors, or a cost matrix is not
+  /// usable; nothing else is set then.
   bool solved = false;
   std::vector<DualQuaternion> poses;  ///< of every sensor in sensor 0
   /// Standard deviations of these poses, x y z roll pitch yaw in sensor 0's frame [m, rad], by the jack-knife
@@ -39,7 +40,8 @@ struct ConsistentSet {
   /// No set of poses has a lower cost than this. Equal to pairwise_bound where nothing better is proven.
   double lower_bound = 0;
   double rounding = 0;  ///< of the cost: what double precision cannot distinguish
-  /// Globally optimal: cost - lower_bound is at most twice the rounding (docs/rigs.md has the proof).
+  /// Whether the set is globally optimal: cost - lower_bound is at most twice the rounding (docs/rigs.md has
+  /// the proof).
   bool certified = false;
 };
 
@@ -52,7 +54,8 @@ struct RigPair {
   std::size_t a = 0, b = 0;
   Problem problem;                ///< mode, planes and balance; its blocks are not looked at
   std::vector<MotionPair> pairs;  ///< consecutive, in the order of time; outliers are omitted
-  /// Motions are rejected that fit this answer far worse than the median one does; empty: around their own.
+  /// The pair's answer: motions that fit it far worse than the median one does are rejected. Empty: the
+  /// motions' own answer is taken for that.
   std::optional<DualQuaternion> T_a_b;
   /// What the pair's own answer states to be uncertain by, x y z roll pitch yaw [m, rad], infinite where it
   /// is not known: a loop that is off by less contradicts nothing. Empty: nothing is stated.

@@ -17,7 +17,7 @@ struct ScaleSolution {
   double lower_bound = 0;  ///< no scale in the range and no extrinsic has a cost below it, up to rounding
   double gap = 0;          ///< cost - lower_bound, >= 0
   double rounding = 0;     ///< costs that differ by less than this are equal
-  /// No scale outside of these two has as low a cost. Scales as `scale` is one, not parts of it.
+  /// No scale outside of these two has as low a cost. They are scales as `scale` is one, not parts of it.
   double least_scale = 0, most_scale = 0;
   bool certified = false;  ///< the gap is within the tolerance, and q is certified at the scale
   bool at_limit = false;   ///< the best scale is the end of the range

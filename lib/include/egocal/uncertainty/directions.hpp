@@ -9,7 +9,7 @@
 
 namespace egocal {
 
-/// Per direction x y z roll pitch yaw of sensor a's frame.
+/// What is known of each direction x y z roll pitch yaw of sensor a's frame.
 struct Observability {
   std::array<bool, 6> observable{};
   std::array<double, 6> stddev{};  ///< [m, rad]; infinite where not observable

@@ -23,7 +23,7 @@ class McapWriter {
   /// geometry_msgs/PoseStamped on a topic. Times in a topic may come in any order. Throws Error where the
   /// disk is full, or the topic is the 65,536th.
   void write_pose(const std::string& topic, const std::string& frame, const StampedPose& pose);
-  /// tf2_msgs/TFMessage with the pose of `child` in `parent`, on /tf.
+  /// Writes a tf2_msgs/TFMessage with the pose of `child` in `parent`, on /tf.
   void write_transform(const std::string& parent, const std::string& child, const StampedPose& pose);
   void close();  ///< throws Error
 

@@ -39,7 +39,7 @@ class Recording {
 
   virtual ~Recording() = default;
 
-  /// "TUM", "MCAP", ...
+  /// Name of the format: "TUM", "MCAP", ...
   virtual std::string format() const = 0;
   /// Whether lengths are meant to be metres.
   virtual bool has_scale() const { return true; }

@@ -97,7 +97,7 @@ class Stream {
   std::optional<std::int64_t> behind_gap_us() const;
   /// The sender has nothing for the first gap.
   std::vector<NumberedPose> give_up_first_gap();
-  /// Something is missing before what is held back.
+  /// Whether something is missing before what is held back.
   bool waiting() const { return !state_.early.empty() || !state_.held.empty(); }
   std::size_t held_back() const { return state_.early.size() + state_.held.size() + unconfirmed(); }
   /// How many are far off and not confirmed yet, of a sender that can send again what is missing before them.

@@ -50,9 +50,9 @@ class RobustStatistics {
   /// problem: mode, planes and balance in force. overlap: the stride, see find_consensus().
   void add(const MotionPair& pair, const Problem& problem, int overlap = 1,
            const RobustOptions& options = {});
-  /// Takes in one that was found not to disagree, by the agreement in force.
+  /// Takes in a motion that was found not to disagree, by the agreement in force.
   void add_agreeing(const detail::MotionSquare& motion);
-  /// Takes it in whatever the others say.
+  /// Takes in a motion whatever the others say.
   void add_unjudged(const MotionPair& pair);
   /// Looks for the consensus now.
   void look(const Problem& problem, int overlap = 1, const RobustOptions& options = {});

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view packed_endings[] = {".zstd", ".zst", ".gz", ".bz2", ".lz4"};
 constexpr const char* metadata_name = "metadata.yaml";
 
-/// "drive_10.db3" after "drive_9.db3".
+/// Order of the parts of a bag by name: "drive_10.db3" after "drive_9.db3".
 bool natural_less(const std::string& a, const std::string& b) {
   return a.size() != b.size() ? a.size() < b.size() : a < b;
 }

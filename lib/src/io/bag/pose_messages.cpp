@@ -8,7 +8,7 @@ namespace egocal::detail {
 
 namespace {
 
-/// std_msgs/Header.
+/// Reads a std_msgs/Header.
 void read_header(MessageDecoder& from, MessagePose& pose) {
   if (from.ros1()) from.u32();  // sequence number
   const std::int64_t seconds = from.ros1() ? static_cast<std::int64_t>(from.u32()) : from.i32();
@@ -16,7 +16,7 @@ void read_header(MessageDecoder& from, MessagePose& pose) {
   pose.parent = from.text();
 }
 
-/// geometry_msgs/Pose and geometry_msgs/Transform: x y z, then the quaternion x y z w.
+/// Reads a geometry_msgs/Pose or geometry_msgs/Transform: x y z, then the quaternion x y z w.
 void read_pose(MessageDecoder& from, MessagePose& pose) {
   for (int i = 0; i < 3; ++i) pose.translation[i] = from.f64();
   for (const int i : {1, 2, 3, 0}) pose.wxyz[i] = from.f64();

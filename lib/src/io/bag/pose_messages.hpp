@@ -25,7 +25,7 @@ struct MessagePose {
 /// Whether poses can be taken, or integrated, from messages of this type ("nav_msgs/Odometry", ROS 1 style).
 bool is_pose_type(std::string_view type);
 inline constexpr std::string_view transforms_type = "tf2_msgs/TFMessage";
-/// tf2_msgs/TFMessage, or its name before 2013.
+/// Whether this is tf2_msgs/TFMessage, or its name before 2013.
 bool is_transforms_type(std::string_view type);
 
 /// Hands every pose of the message to `take`: one, or as many as a TFMessage holds. False where the bytes

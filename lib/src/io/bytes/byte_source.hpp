@@ -45,7 +45,7 @@ class ByteSource {
   /// "holds no data", and why where unpacking has failed: for a file in which nothing was found.
   std::string why_empty() const;
 
-  /// Back to the first byte. Throws Error where the file is a pipe that has been read from.
+  /// Goes back to the first byte. Throws Error where the file is a pipe that has been read from.
   void rewind();
 
  private:

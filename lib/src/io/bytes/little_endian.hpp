@@ -45,7 +45,7 @@ class LittleEndian {
 
   std::size_t left() const { return bytes_.size(); }
   bool ok() const { return ok_; }
-  /// Everything was read, and nothing beyond.
+  /// Whether everything was read, and nothing beyond.
   bool complete() const { return ok_ && bytes_.empty(); }
 
  private:

@@ -55,7 +55,7 @@ std::string joined(const Vector& values, const char* separator) {
 
 Eigen::Vector4d wxyz(const Eigen::Quaterniond& q);
 Eigen::Vector4d xyzw(const Eigen::Quaterniond& q);
-/// Row by row.
+/// The nine numbers of the rotation matrix, row by row.
 Eigen::Matrix<double, 9, 1> rotation_rows(const Eigen::Quaterniond& q);
 /// Four lines "- [r, r, r, t]".
 std::string matrix_rows(const Pose& T, const std::string& indent);

@@ -69,13 +69,14 @@ struct ColumnMap {
   }
   bool has_time() const { return has(Quantity::time) || has(Quantity::seconds); }
   bool has_pose() const { return (has_position() || has_geodetic()) && has_attitude(); }
-  /// Velocities that are integrated to poses: speed and turning about the vertical axis at least.
+  /// Whether there are velocities that are integrated to poses: speed and turning about the vertical axis at
+  /// least.
   bool has_twist() const { return has(Quantity::vx) && has(Quantity::wz); }
   /// A pose can be made of it (times of poses can be made up).
   bool complete() const { return has_pose() || (has_twist() && has_time()); }
   /// What is missing, in words.
   std::string missing() const;
-  /// Columns that a row needs at least.
+  /// Number of columns that a row needs at least.
   std::size_t width() const;
 };
 

@@ -31,7 +31,8 @@ YamlLine yaml_line(std::string_view line) {
   return key[1] != ' ' ? YamlLine::no : item ? YamlLine::nested : YamlLine::value;
 }
 
-/// Two lines with keys, one of them nested: lines about a recording before its table are not.
+/// Whether a text is YAML: two lines with keys, one of them nested. Lines about a recording before its table
+/// are not.
 bool is_yaml(std::string_view text) {
   if (text.starts_with("%YAML") || text.starts_with("---\n")) return true;
   bool nested = false;
@@ -49,7 +50,7 @@ bool is_yaml(std::string_view text) {
   return nested;
 }
 
-/// JSON, XML, YAML, point clouds and pose graphs are text, but no tables.
+/// Throws Error for JSON, XML, YAML, point clouds and pose graphs, which are text, but no tables.
 void refuse_other_text(const std::string& file, std::string_view text) {
   const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
   const std::string_view start = text.substr(begin, 16);
@@ -119,7 +120,7 @@ std::size_t count_of(std::string_view text, char c) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), c));
 }
 
-/// Names between tabs, none of them empty.
+/// Whether a line has names between tabs, none of them empty.
 bool names_between_tabs(std::string_view line) {
   std::vector<std::string_view> names;
   const std::size_t all = split(line, '\t', names);

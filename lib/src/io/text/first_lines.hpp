@@ -24,7 +24,7 @@ Sniffed sniff(ByteSource& source);
 /// option.
 char separator_of(const Sniffed& sniffed, const std::string& columns);
 
-/// Names instead of numbers: the first field is a word, and so are most of the others.
+/// Whether a line has names instead of numbers: the first field is a word, and so are most of the others.
 bool is_header(std::string_view line, char separator);
 
 /// Whether the numbers have decimal commas, in a file that has no decimal point.

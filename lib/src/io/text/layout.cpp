@@ -35,7 +35,7 @@ void set_tum(TextLayout& layout) {
   layout.fields = 8;
 }
 
-/// Four numbers from a field on, as a quaternion of length one.
+/// Whether four numbers from a field on are a quaternion of length one.
 bool is_unit_quaternion(const std::vector<std::string_view>& row, std::size_t first) {
   double square = 0;
   for (std::size_t i = first; i < first + 4; ++i) {

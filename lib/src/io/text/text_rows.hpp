@@ -16,7 +16,7 @@
 
 namespace egocal::detail {
 
-/// Neither empty nor a comment.
+/// Whether a line holds data: it is neither empty nor a comment.
 inline bool is_data(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t\r");
   return first != std::string_view::npos && line[first] != '#' && line[first] != '%';

@@ -22,7 +22,8 @@ bool any_number(std::string_view field) {
   return is_number(field) || has_decimal_comma(field);
 }
 
-/// Mostly numbers, or nothing else: of a pose that was lost there may be a time alone.
+/// Whether a line is a row: mostly numbers, or nothing else. Of a pose that was lost there may be a time
+/// alone.
 bool is_row(const Fields& fields) {
   const auto filled =
       std::count_if(fields.begin(), fields.end(), [](std::string_view field) { return !field.empty(); });

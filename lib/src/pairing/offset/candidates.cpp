@@ -10,7 +10,7 @@ namespace egocal::detail {
 
 namespace {
 
-/// Added to the stamps of b, at at_b_us [us].
+/// What is added to the stamps of b, at at_b_us [us].
 double offset_us(const ClockLine& clock) {
   return static_cast<double>(clock.at_a_us - clock.at_b_us) + clock.shift_us;
 }
