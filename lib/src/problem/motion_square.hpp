@@ -64,9 +64,9 @@ class MotionSquare {
   /// The square for the signs of a and b that make their scalars >= 0.
   MotionSquare(const DualQuaternion& a, const DualQuaternion& b);
 
-  /// Adds it, multiplied by eta. in_pairs: as on processors without wide vectors, for tests.
+  /// Adds the square, multiplied by eta. in_pairs: as on processors without wide vectors, for tests.
   void add_to(Matrix8d& sum, double eta = 1, bool in_pairs = false) const;
-  /// Adds it, weighted, to each of the sums.
+  /// Adds the square, weighted, to each of the sums.
   void add_weighted_to(std::span<Matrix8d* const> sums, const SquareWeights& weights,
                        bool in_pairs = false) const;
   /// The 64 entries, column by column.

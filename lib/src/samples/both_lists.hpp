@@ -11,7 +11,8 @@
 
 namespace egocal::detail {
 
-/// Study: tests/lib/test_samples_mistakes.cpp and docs/samples.md, "Measured".
+/// Tuning of the findings about both lists. Study: tests/lib/test_samples_mistakes.cpp and docs/samples.md,
+/// "Measured".
 struct BothListsOptions {
   /// How much likelier the residuals must be under one reading before noise decides (logarithm): 150 to 1.
   double least_likelier = 5;

@@ -12,14 +12,15 @@
 
 namespace egocal::detail {
 
-/// Study: targets that were moved by 2 to 40 cm and 2.5 to 50 deg (docs/samples.md, "Measured").
+/// Tuning of find_large_slip(). Study: targets that were moved by 2 to 40 cm and 2.5 to 50 deg
+/// (docs/samples.md, "Measured").
 struct LargeSlipOptions {
-  /// Units before the slip, and after it. Each part has twelve numbers of its own, so that few poses agree by
-  /// chance.
+  /// Least number of units before the slip, and after it. Each part has twelve numbers of its own, so that
+  /// few poses agree by chance.
   std::size_t least_part = 6;
   std::size_t most_places = 24;  ///< that are tried first: two fits each
-  /// Looked for where one sample has more noise than this, in parts of the length or in radians: below it the
-  /// test that is linear around the answer of all finds more.
+  /// A large slip is looked for where one sample has more noise than this, in parts of the length or in
+  /// radians: below it the test that is linear around the answer of all finds more.
   double least_noise = 0.03;
   /// Two parts leave the variance smaller by this factor, so that errors of a lens or of the lengths of an
   /// arm, which also differ from part to part, are no slip. From the second one on it is certain.

@@ -12,7 +12,7 @@
 
 namespace egocal::detail {
 
-/// Study: tests/lib/test_samples_mistakes.cpp and docs/samples.md, "Measured".
+/// Tuning of find_slip(). Study: tests/lib/test_samples_mistakes.cpp and docs/samples.md, "Measured".
 struct SlipOptions {
   std::size_t least_part = 4;    ///< units before the slip, and after it
   std::size_t most_places = 64;  ///< that are tried

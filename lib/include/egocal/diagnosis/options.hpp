@@ -303,16 +303,17 @@ struct DiagnosisOptions {
   /// Correlation of the turning of both streams below which they are called unrelated, where the best answer
   /// leaves contradictory_misfit of the typical motion unexplained.
   double unrelated_correlation = 0.5;
-  /// The same where it leaves less, but more than unrelated_misfit (at less, the streams belong together), of
-  /// the eight tenths of the motions that turn most alike: outliers spoil the correlation of all. Of 79 such
-  /// pairs of unrelated drives 75 are below 0.76 (the others: straight rows of tractors, 0.81 to 0.97). Of
-  /// 671 clean drives none that leaves 0.12 is below 0.96, of their first five seconds and of odometries that
-  /// start anew none below 0.83, of ten drives with noise of 1 to 10 degrees on every pose none below 0.87. A
-  /// boat with a tenth of outliers and 4 degrees of noise has 0.80, and with a fifth of outliers is called
-  /// unrelated (0.68).
+  /// The same correlation where the best answer leaves less, but more than unrelated_misfit (at less, the
+  /// streams belong together), over the eight tenths of the motions that turn most alike: outliers spoil the
+  /// correlation of all. Of 79 such pairs of unrelated drives 75 are below 0.76 (the others: straight rows of
+  /// tractors, 0.81 to 0.97). Of 671 clean drives none that leaves 0.12 is below 0.96, of their first five
+  /// seconds and of odometries that start anew none below 0.83, of ten drives with noise of 1 to 10 degrees
+  /// on every pose none below 0.87. A boat with a tenth of outliers and 4 degrees of noise has 0.80, and with
+  /// a fifth of outliers is called unrelated (0.68).
   double unrelated_misfit = 0.15, unrelated_part_correlation = 0.78, unrelated_part = 0.8;
-  /// Shortest drive that is called unrelated by this [s]: in a shorter one noise may be what the sensors turn
-  /// by. Of 352 parts of 4 and 8 s of right drives 20 would be called unrelated, of 340 of 15 and 25 s none.
+  /// Shortest drive that unrelated_part_correlation calls unrelated [s]: in a shorter one noise may be what
+  /// the sensors turn by. Of 352 parts of 4 and 8 s of right drives 20 would be called unrelated, of 340 of
+  /// 15 and 25 s none.
   double unrelated_least_seconds = 12;
   /// Least turning in all, of outliers cleared [rad]: where streams turn by less, the noise of odometry
   /// decides.

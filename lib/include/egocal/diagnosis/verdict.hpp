@@ -13,7 +13,7 @@
 namespace egocal {
 
 /// Whether an answer can be used. A certificate says that no other extrinsic has a lower cost; it does not
-/// say that the motions are those of rigidly mounted sensors. This does.
+/// say that the motions are those of rigidly mounted sensors. The verdict does.
 enum class Verdict {
   good,           ///< the motions agree, and every direction is known well enough
   incomplete,     ///< the motions agree; some direction is not known well enough yet

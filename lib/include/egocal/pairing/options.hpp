@@ -67,11 +67,11 @@ struct CongruenceOptions {
   /// How large the lever arm between the sensors may be [m]. It explains why the lengths of their motions
   /// differ while the vehicle turns. 10 m cover cars and trucks; trailers, cranes and ships need more.
   double longest_lever_arm = 10;
-  /// Its length and the noise of turning are learnt from the motions that turn more than others. A motion
-  /// that turns by more than `turns_more` times the larger half of those seen may show the longest arm, and
-  /// has at least this part of its angle as noise. Study: AGVs that turn in place after 3 s straight, 5 kinds
-  /// of noise x 40 drives of 100 poses; the whole first turn was rejected in about a third of them
-  /// (docs/accuracy.md).
+  /// The length of the lever arm and the noise of turning are learnt from the motions that turn more than
+  /// others. A motion that turns by more than `turns_more` times the larger half of those seen may show the
+  /// longest arm, and has at least this part of its angle as noise. Study: AGVs that turn in place after 3 s
+  /// straight, 5 kinds of noise x 40 drives of 100 poses; the whole first turn was rejected in about a third
+  /// of them (docs/accuracy.md).
   double noise_of_turns = 0.01;
   double turns_more = 3;
 };
@@ -140,9 +140,10 @@ struct AccumulatorOptions {
   /// Number of synchronised instants at which stride and balance are chosen first. Each further choice comes
   /// after a quarter more: the cost of choosing stays a constant part of the work.
   std::uint64_t first_choice = 64;
-  /// Before that, answers are of a choice that is made for them, from this many instants on, and that nothing
-  /// later depends on. With equal weights drives of 20 to 60 poses are off by three times as much; from fewer
-  /// than 16, one answer in a hundred is called good and is off (docs/weights.md, "From how many poses on").
+  /// Before the first choice, answers are of a choice that is made for them, from this many instants on, and
+  /// that nothing later depends on. With equal weights drives of 20 to 60 poses are off by three times as
+  /// much; from fewer than 16, one answer in a hundred is called good and is off (docs/weights.md, "From how
+  /// many poses on").
   std::uint64_t early_choice = 16;
   /// Share of the instants to the next choice by which each choice comes later, in [0, 1): several pairs of
   /// one rig choose at different times.

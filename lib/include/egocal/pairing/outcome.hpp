@@ -50,8 +50,8 @@ struct PairingCounts {
 struct Choice {
   int stride = 1;   ///< the best single one
   Balance balance;  ///< of that stride
-  /// The problem is a sum of motions of many strides, each weighted by its residuals. So long they are in the
-  /// mean [steps]; 0: the motions of `stride` alone.
+  /// Mean length of the motions [steps] where the problem is a sum of motions of many strides, each weighted
+  /// by its residuals; 0: the motions of `stride` alone.
   double mean_stride = 0;
   std::string reason;  ///< "fixed", or the jack-knife's numbers in a short sentence
 };

@@ -111,8 +111,8 @@ struct RigSolution {
   std::vector<Loop> loops;
   /// Poses of all sensors; not solved in planar mode, where the pairs with sensor 0 take its place.
   ConsistentSet set;
-  /// Per sensor, what it adds to the residuals of its pairs (three-cornered hat), as a part of the mean;
-  /// empty with two sensors.
+  /// What each sensor adds to the residuals of its pairs (three-cornered hat), as a part of the mean; empty
+  /// with two sensors.
   std::vector<double> noise;
   std::optional<std::size_t> blamed;  ///< the sensor that stands out by its noise
 };

@@ -21,8 +21,9 @@ struct SampleOptions {
   /// A sample is wrong where noise alone would explain its residual less often than this. Real detections
   /// have heavier tails than a normal distribution, so it is far below the usual 1e-3.
   double wrong_probability = 1e-6;
-  /// Nor is a sample wrong that is nearer to the others than this many standard deviations, learnt from the
-  /// median of all: detections have heavy tails, which belong to them (8 in the real sets of the study).
+  /// A sample is not wrong, either, where it is nearer to the others than this many standard deviations,
+  /// learnt from the median of all: detections have heavy tails, which belong to them (8 in the real sets of
+  /// the study).
   double heaviest_tail = 8;
   /// Part of the samples that must agree before the others are judged. Up to 40 % may be wrong.
   double least_agreeing = 0.6;
@@ -40,10 +41,10 @@ struct SampleOptions {
   double tolerance_of_distance = 0.0174;
   /// Motions that the fit is judged on, at most: its medians are good to a tenth. All pairs of 25 samples.
   std::size_t most_motions = 300;
-  /// Up to this many samples the answer without one is solved for; beyond, it is one Newton step away: what
-  /// that misses is of second order in a step that is a thirtieth of the noise. Where the samples do
-  /// not show a direction, that step is not small. Then the samples are divided into this many groups, and
-  /// the answer without each group is solved for.
+  /// Up to this many samples, the answer without each sample is solved for. Beyond, that answer is taken one
+  /// Newton step away: what this misses is of second order in a step that is a thirtieth of the noise. Where
+  /// the samples do not show a direction, that step is not small. Then the samples are divided into this many
+  /// groups, and the answer without each group is solved for.
   std::size_t most_solved = 30;
 };
 

@@ -16,8 +16,8 @@ struct AttenuationOptions {
   /// A pull is corrected where it is larger than this part of the standard deviation. Smaller ones widen an
   /// interval by at most 5 %.
   double least_pull = 1.0 / 3;
-  /// Where the noise makes a larger part of the curvature, it is not corrected: the correction doubles the
-  /// error of what is known.
+  /// Largest part of the curvature that the noise makes where a direction is corrected: beyond, the
+  /// correction doubles the error of what is known.
   double most_noise = 0.5;
   /// A direction that has 30 times the curvature of the noise is shown by the rotations. Others must differ
   /// from zero by 4 standard deviations, as noise that the sensors share also pulls there

@@ -50,7 +50,7 @@ struct JumpOptions {
   /// Tails are not judged by fewer far steps than this, however few the steps: four of a hundred are rarely
   /// chance. Study: tests/bench/heavy_tail_study.cpp.
   double least_far = 4;
-  /// Not more than this part of the steps are jumps: then there is no majority to judge by.
+  /// Largest part of the steps that are jumps: beyond, there is no majority to judge by.
   double most_jumps = 0.4;
   /// Residuals below these are the rounding of what sensors send [rad, m]: the seventh digit of a quaternion,
   /// a micrometre.

@@ -18,21 +18,21 @@ namespace egocal {
 /// link, the file that it points to is replaced, and a file that is replaced hands on its permissions.
 class WholeFile {
  public:
-  /// Throws Error where it cannot be written, or where the name cannot be replaced.
+  /// Throws Error where the file cannot be written, or where the name cannot be replaced.
   explicit WholeFile(const std::string& file);
   ~WholeFile();
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;
 
-  /// Throws Error, e.g. where the disk is full.
+  /// Writes more of the file. Throws Error, e.g. where the disk is full.
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
   /// Gives the file its name. Throws Error; what had the name before is then still there. Nothing can be
   /// written afterwards but to the file descriptor; a second call does nothing.
   void commit();
-  /// The same where no file has the name. False: one has it, and nothing was written.
+  /// Gives the file its name where no file has it. False: one has it, and nothing was written.
   bool commit_as_new();
-  /// After commit(): the file, open for writing at its end. The caller closes it.
+  /// Hands over the file after commit(), open for writing at its end. The caller closes it.
   int release_descriptor();
 
  private:
@@ -59,7 +59,7 @@ void write_whole_file(const std::string& file, std::string_view content);
 /// Writes the whole file under a name that no file has. False: one has it. Throws Error.
 bool write_new_file(const std::string& file, std::string_view content);
 
-/// All of the bytes to what a descriptor has open. False: not all, and errno tells why.
+/// Writes all of the bytes to what a descriptor has open. False: not all, and errno tells why.
 bool write_all(int fd, std::span<const std::byte> bytes);
 
 /// The file that a path names once all symbolic links are followed, whether it exists or not.

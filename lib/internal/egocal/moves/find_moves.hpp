@@ -97,8 +97,8 @@ struct MovesOptions {
   /// one place, as two lidars do for 13 of KITTI 05's 276 s, looks like a mount that moved there. Study:
   /// docs/moves.md, "Falling back".
   double least_displaced = 0.1;
-  /// The parts before and after it agree, or differ by less than this part of the change: less is left of two
-  /// moves than each of them is.
+  /// The parts before and after the displacement agree, or differ by less than this part of the change: less
+  /// is left of two moves than each of them is.
   double most_left = 0.5;
   /// Noise of the rotations as a part of how far motions turn, at most: a shorter stride with more of it only
   /// confirms what longer ones show. The test is linear, and noise of poses, which the motions on either side

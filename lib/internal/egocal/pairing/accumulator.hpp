@@ -82,9 +82,9 @@ class Accumulator {
   /// nothing to the rest before the answer is asked for, and are half of the work. To be called before the
   /// first add().
   void defer_sums();
-  /// What was left since it was taken.
+  /// The steps that add() has left since the last call.
   std::vector<SumsStep> take_deferred() { return std::exchange(deferred_, {}); }
-  /// All of them in order, before anything else is asked: the same bits as without defer_sums().
+  /// Adds all deferred steps in order, before anything else is asked: the same bits as without defer_sums().
   void add_to_sums(const std::vector<SumsStep>& steps);
 
   /// What would be known if a choice were made now: before the first choice, but from

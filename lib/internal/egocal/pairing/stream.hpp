@@ -29,11 +29,12 @@ struct StreamOptions {
   /// Judges every time stamp by its two neighbours, which delays the poses by two: for recordings, where
   /// nothing waits. Without it a stamp that is damaged by less than largest_jump costs the poses in between.
   bool look_ahead = false;
-  /// Time that jumps by more is not believed until other messages confirm it [s], nor by more than
-  /// jump_periods periods of the source. Longer than the gaps that a busy source leaves.
+  /// Largest jump of time [s], and in periods of the source: a time that jumps by more than both is not
+  /// believed until other messages confirm it. Longer than the gaps that a busy source leaves.
   double largest_jump = 1;
   std::int64_t jump_periods = 4;
-  /// Nor numbers that jump by more; and at most this is held back or remembered as lost. 10 s at 100 Hz.
+  /// Largest jump of a number that is believed without a confirmation. At most this many messages are held
+  /// back or remembered as lost. 10 s at 100 Hz.
   std::int64_t most_missing = 1000;
   /// A sender that repeats the first message behind a gap this often, and sends nothing for the gap, has
   /// nothing for it: the missing message would have been lost seven times, once in 7,000 at a loss of 28 %.
@@ -91,24 +92,24 @@ class Stream {
 
   /// The poses that are now in order, oldest first.
   std::vector<NumberedPose> push(NumberedPose sample);
-  /// Stops waiting: nothing has come for long.
+  /// Stops waiting, as nothing has come for long; returns the poses held back.
   std::vector<NumberedPose> flush();
   /// Time of the first message behind the first gap [us]; empty: there is no gap.
   std::optional<std::int64_t> behind_gap_us() const;
-  /// The sender has nothing for the first gap.
+  /// Gives up the first gap: the sender has nothing for it.
   std::vector<NumberedPose> give_up_first_gap();
   /// Whether something is missing before what is held back.
   bool waiting() const { return !state_.early.empty() || !state_.held.empty(); }
   std::size_t held_back() const { return state_.early.size() + state_.held.size() + unconfirmed(); }
-  /// How many are far off and not confirmed yet, of a sender that can send again what is missing before them.
-  /// Without numbers nothing is known to be missing.
+  /// Number of messages that are far off and not confirmed yet, of a sender that can send again what is
+  /// missing before them. Without numbers nothing is known to be missing.
   std::size_t unconfirmed() const;
-  /// The number that it waits for or expects next; -1: none.
+  /// The number that the stream waits for or expects next; -1: none.
   std::int64_t expected() const { return state_.next_seq.value_or(-1); }
   std::optional<std::int64_t> newest_us() const { return state_.newest_us; }
   const StreamCounts& counts() const { return state_.counts; }
-  /// How many messages came again from before what it waits for. Where it grows, the sender has gone back (it
-  /// was restarted) and will come to what is missing. Not part of the state.
+  /// Number of messages that came again from before what the stream waits for. Where it grows, the sender has
+  /// gone back (it was restarted) and will come to what is missing. Not part of the state.
   std::int64_t repeated() const { return repeated_; }
 
   /// While the sender sends again what is missing, however long that takes in measured time, it is waited

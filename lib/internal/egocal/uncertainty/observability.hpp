@@ -68,7 +68,7 @@ Observability assess_observability(const Problem& problem, const Matrix8d& Q, co
                                    ErrorCorrelation errors = ErrorCorrelation::correlated,
                                    const ObservabilityOptions& options = {});
 
-/// The observable ones alone, without the jack-knife.
+/// The observable directions alone, without the jack-knife.
 std::array<bool, 6> observable_directions(const Problem& problem, const Matrix8d& Q,
                                           const DualQuaternion& T_a_b, ErrorCorrelation errors,
                                           const ObservabilityOptions& options = {});
