@@ -206,29 +206,47 @@ void WholeFile::write(std::string_view text) {
   write(std::as_bytes(std::span(text)));
 }
 
-void WholeFile::commit() {
-  if (committed_) return;
+/// Brings all to the disk, under a temporary name.
+void WholeFile::complete() {
   flush();
   if (fsync(fd_) != 0) fail(std::string("cannot be written: ") + std::strerror(errno));
   // a name cannot be given to it in place of another file's
   name_temporary([unnamed = link_of(fd_)](const char* name) {
     return linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0;
   });
+}
+
+void WholeFile::take_name() {
   if (std::rename(temporary_.c_str(), target_.c_str()) != 0)
     fail(std::string("cannot be written: ") + std::strerror(errno));
+  took_name();
+}
+
+void WholeFile::took_name() {
   temporary_.clear();
   committed_ = true;
   sync_folder(target_);
 }
 
+void WholeFile::commit() {
+  if (committed_) return;
+  complete();
+  take_name();
+}
+
 bool WholeFile::commit_as_new() {
-  flush();
-  if (fsync(fd_) != 0) fail(std::string("cannot be written: ") + std::strerror(errno));
+  complete();
+  if (renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0) {
+    took_name();
+    return true;
+  }
+  if (errno == EEXIST) return false;
+  // NFS and others can only replace: an empty file keeps the name free of others for the moment before that
   const Descriptor reserved(open(target_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (reserved.get() < 0 && errno == EEXIST) return false;
   if (reserved.get() < 0) fail(std::string("cannot be written: ") + std::strerror(errno));
   try {
-    commit();
+    take_name();
   } catch (...) {
     unlink(target_.c_str());
     throw;

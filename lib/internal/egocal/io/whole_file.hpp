@@ -37,6 +37,9 @@ class WholeFile {
 
  private:
   void flush();
+  void complete();
+  void take_name();
+  void took_name();
   void name_temporary(const std::function<bool(const char*)>& take);
   [[noreturn]] void fail(const std::string& why) const;
 
