@@ -82,7 +82,7 @@ class EarlyChoices : public ::testing::Test {
   std::map<int, std::vector<Sent>> sent_;
 };
 
-TEST_F(EarlyChoices, TakeTurnsAndLeaveTheLastMotionToNobody) {
+TEST_F(EarlyChoices, TakeTurnsAndEndWithTheLastMotion) {
   send(0, 50);
   run(200ms);
   std::vector<std::int64_t> times;
@@ -130,7 +130,7 @@ TEST_F(EarlyChoices, AreThoseOfTheSamePosesAtAnySpeed) {
 }
 
 // A pair that was reset has a new motion that is never sent.
-TEST_F(EarlyChoices, AResetPairKeepsNobodyFromItsTurn) {
+TEST_F(EarlyChoices, AResetPairDoesNotBlockTheOthers) {
   send(0, 40);
   command_t reset{};
   reset.to = "*";

@@ -27,7 +27,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// A `good` beside an answer that nobody has judged was exported as good.
+// The verdict `good` was exported with a newer answer that had not been judged.
 TEST_F(AnswersTest, AGoodVerdictIsNotThatOfAnAnswerThatHasMoved) {
   const std::string log = folder / "moved.log";
   const problem_t first = problem(5);

@@ -30,7 +30,7 @@ using ::testing::HasSubstr;
 using tools::Program;
 
 // Where several users write, such as /tmp, a folder of that name may be somebody else's.
-TEST_F(Supervision, APrivateFolderIsNobodyElses) {
+TEST_F(Supervision, APrivateFolderBelongsToThisUserAlone) {
   tools::require_private_folder(path("new"));
   tools::require_private_folder(path("new"));
   using std::filesystem::perms;

@@ -11,8 +11,8 @@ namespace egocal::tools {
 /// Throws Error where that one is not private.
 std::string default_output_directory();
 
-/// Makes the folder where it is not there. Throws Error where it is not a folder that nobody but this user
-/// can write to: in a folder of all users, such as /tmp, it may be somebody else's.
+/// Makes the folder if it does not exist. Throws Error if it is not a folder, or if other users can write to
+/// it: in a folder of all users, such as /tmp, it may belong to another user.
 void require_private_folder(const std::string& folder);
 
 /// Opens a file for appending, with a line that says when; a file of more than 10 MB becomes FILE.old first.

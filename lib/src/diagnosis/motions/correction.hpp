@@ -12,8 +12,8 @@
 namespace egocal::detail {
 
 struct CorrectionOptions {
-  /// Time that is left out on both sides of a change [s]: as long as SLAM systems spread a correction. Where
-  /// a side has less left, it says too little.
+  /// Time that is omitted on both sides of a change [s]: SLAM systems spread a correction over as long. A
+  /// side on which less time remains shows too little.
   double seconds = 5;
   /// Without these seconds the motions must show the change with a chance below this: at one place, as
   /// MovesOptions::confirmation.

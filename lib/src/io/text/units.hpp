@@ -22,8 +22,8 @@ std::string known_units(Dimension dimension);
 /// there ("x_min" is the least x).
 bool is_unit_word(std::string_view word);
 
-/// Whether what stands for the unit states a clock and no unit: "time (UTC)" and "time (YYYY-MM-DD
-/// hh:mm:ss)".
+/// Whether the text in the place of the unit names a clock or a format of times instead of a unit, as in
+/// "time (UTC)" and "time (YYYY-MM-DD hh:mm:ss)".
 bool states_a_clock(std::string_view unit);
 
 }  // namespace egocal::detail

@@ -14,18 +14,17 @@ namespace egocal::detail {
 
 /// Study: docs/trust_rules.md, "One coordinate that is late".
 struct LateColumnOptions {
-  /// Speeds are those over at least this time [s], and on either side over so many instants at most.
-  double least_span = 0.2;
-  std::size_t most_instants = 200;
-  double least = 0.05;  ///< delays below this are not named [s]
-  double most = 10;     ///< nor above: what is not measured at all [s]
+  double least_span = 0.2;          ///< a speed is measured over at least this time [s]
+  std::size_t most_instants = 200;  ///< and over at most this many instants on each side
+  double least = 0.05;              ///< delays below this are not named [s]
+  double most = 10;                 ///< nor above: what is not measured at all [s]
   /// A coordinate is looked at closer where its delay explains this part of the residual translations, as
   /// root mean squares.
   double first_look = 0.15;
-  /// Where the blocks of the drive do not show the delay, it is more than so many of its standard deviations,
-  /// by omitting so many parts of the drive in turn.
+  /// The blocks of the drive may not show the delay. Then it must be larger than this many of its standard
+  /// deviations.
   double sigmas = 5;
-  std::size_t parts = 24;
+  std::size_t parts = 24;    ///< of the drive; each is omitted in turn for that standard deviation
   double least_gain = 0.05;  ///< mean logarithm of the squared residuals then, at least
   /// A coordinate of the other stream is named too where it gains at least this part: less is what the noise
   /// of one is in the other.

@@ -18,9 +18,9 @@ namespace egocal::detail {
 struct LateTurningOptions {
   TwoTimesOptions times;
   std::size_t least = 60;  ///< motions; fewer do not show five numbers and their scatter
-  /// Axes are those of the turning over this many motions in a row, in so many places of the drive: what only
-  /// shakes to and fro adds up to little.
-  std::size_t in_a_row = 8, places = 100;
+  /// The axes are found from the turning over this many consecutive motions. Shaking adds up to little there.
+  std::size_t in_a_row = 8;
+  std::size_t places = 100;  ///< of the drive, at which that turning is measured
   /// Standard deviations of the time about the axis from zero, and from the time about the other axes.
   double sigmas = 6, sigmas_apart = 4;
   /// The time about the other axes is at most this part of it: a clock that differs has one time about all.
