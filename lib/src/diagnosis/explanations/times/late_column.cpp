@@ -11,6 +11,7 @@
 
 #include "diagnosis/explanations/common_mistakes.hpp"
 #include "diagnosis/motions/changed_motions.hpp"
+#include "diagnosis/motions/speeds.hpp"
 #include "diagnosis/motions/stillest_point.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
@@ -31,24 +32,13 @@ using OfColumns = std::vector<Matrix3d>;
 OfColumns of_columns(const Instants& instants, const Motions& motions, Side side,
                      const LateColumnOptions& late) {
   const std::size_t last = instants.size() - 1;
-  const auto reach = std::clamp<std::size_t>(
-      static_cast<std::size_t>(std::ceil(0.5 * late.least_span / std::max(instants.period, 1e-6))), 1,
-      late.most_instants);
-  const auto pose = [&](std::size_t i) {
-    const PosePair poses = instants.at(i);
-    return side == Side::a ? poses.a : poses.b;
-  };
-  const auto speed = [&](std::size_t i) -> Vector3d {
-    const std::size_t before = i >= reach ? i - reach : 0, after = std::min(i + reach, last);
-    const double seconds = instants.time(after) - instants.time(before);
-    if (!(seconds > 0)) return Vector3d::Zero();
-    return (position_of(pose(after)) - position_of(pose(before))) / seconds;
-  };
+  const Speeds speeds(instants, late.least_span, late.most_instants);
   OfColumns result;
   for (const std::size_t i : begins_of(instants, motions)) {
     const std::size_t end = std::min(i + static_cast<std::size_t>(motions.stride), last);
-    const Vector3d more = speed(end) - speed(i);
-    result.emplace_back(rotation_of(pose(i)).transpose() * more.asDiagonal());
+    const Vector3d more = speeds.at(end, side) - speeds.at(i, side);
+    const PosePair begin = instants.at(i);
+    result.emplace_back(rotation_of(side == Side::a ? begin.a : begin.b).transpose() * more.asDiagonal());
   }
   return result;
 }

@@ -10,6 +10,7 @@
 
 #include "diagnosis/explanations/common_mistakes.hpp"
 #include "diagnosis/motions/changed_motions.hpp"
+#include "diagnosis/motions/speeds.hpp"
 #include "diagnosis/motions/stillest_point.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
@@ -20,32 +21,6 @@ namespace {
 
 using Eigen::Vector3d;
 using Changes = std::vector<Vector3d>;
-
-/// Velocities of a stream in its world [m/s]: about an instant, from the positions on either side of it.
-class Speeds {
- public:
-  Speeds(const Instants& instants, const LatePositionsOptions& late)
-      : instants_(instants),
-        side_(std::clamp<std::size_t>(
-            static_cast<std::size_t>(std::ceil(0.5 * late.least_span / std::max(instants.period, 1e-6))), 1,
-            late.most_instants)) {}
-
-  Vector3d at(std::size_t i, Side side) const {
-    const std::size_t before = i >= side_ ? i - side_ : 0, after = std::min(i + side_, instants_.size() - 1);
-    const double seconds = instants_.time(after) - instants_.time(before);
-    if (!(seconds > 0)) return Vector3d::Zero();
-    return (position(after, side) - position(before, side)) / seconds;
-  }
-
-  Vector3d position(std::size_t i, Side side) const {
-    const PosePair poses = instants_.at(i);
-    return position_of(side == Side::a ? poses.a : poses.b);
-  }
-
- private:
-  const Instants& instants_;
-  std::size_t side_;
-};
 
 /// The instant nearest to a time [s].
 std::size_t nearest(const Instants& instants, double time) {
@@ -73,7 +48,7 @@ struct OfDelay {
 /// noise and fits better for that alone.
 OfDelay of_delay(const Instants& instants, const Motions& motions, const std::vector<std::size_t>& begins,
                  Side side, double delay, const LatePositionsOptions& late) {
-  const Speeds speeds(instants, late);
+  const Speeds speeds(instants, late.least_span, late.most_instants);
   const auto span = static_cast<std::size_t>(motions.stride);
   const auto moved = [&](std::size_t i) {
     const double time = instants.time(i) + delay;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "diagnosis/motions/changed_motions.hpp"
+#include "diagnosis/motions/speeds.hpp"
 #include "linear_algebra/cross_matrix.hpp"
 
 namespace egocal::detail {
@@ -39,9 +40,7 @@ StreamOfTwoTimes::StreamOfTwoTimes(const Instants& instants, const Explained& gi
       R_(T_.rotation.toRotationMatrix()),
       about_axis_(axis * axis.transpose()),
       span_(static_cast<std::size_t>(given.motions.stride)),
-      reach_(std::clamp<std::size_t>(
-          static_cast<std::size_t>(std::ceil(0.5 * options.least_span / std::max(instants.period, 1e-6))), 1,
-          options.most_instants)),
+      reach_(reach_of_rates(instants, options.least_span, options.most_instants)),
       longest_(options.across_a_gap * static_cast<double>(span_ + 2 * reach_) * instants.period) {}
 
 bool StreamOfTwoTimes::has(std::size_t i) const {
