@@ -6,10 +6,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <deque>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -17,6 +19,7 @@
 #include "egocal/error.hpp"
 #include "ending_signals.hpp"
 #include "message_queue.hpp"
+#include "work_thread.hpp"
 
 namespace egocal::bus {
 
@@ -69,6 +72,11 @@ struct Loop::Impl {
     }
     // a callback may add another one, which is called after the next batch
     for (std::size_t i = 0, all = batch_callbacks.size(); i < all; ++i) batch_callbacks[i](queue.empty());
+  }
+
+  void wait(std::span<pollfd> fds, Duration timeout) const {
+    if (clock.wait(fds, timeout) < 0 && errno != EINTR)
+      throw Error(std::string("poll: ") + std::strerror(errno));
   }
 
   void run_timers() {
@@ -220,6 +228,18 @@ std::optional<std::int64_t> Loop::next_timer_ns() const {
   return next;
 }
 
+void Loop::receive_while(const Callback& work) {
+  Impl& impl = *impl_;
+  if (impl.transport->fd() < 0) return work();
+  WorkThread thread(work);
+  while (!thread.ended()) {
+    std::array fds{pollfd{impl.transport->fd(), POLLIN, 0}, pollfd{thread.fd(), POLLIN, 0}};
+    impl.wait(fds, impl.transport->ready() ? Duration{0} : Duration{1h});
+    if (fds[0].revents || impl.transport->ready()) impl.queue.fill(*impl.transport);
+  }
+  thread.finish();
+}
+
 void Loop::watch(int fd, Callback callback) {
   impl_->watches.push_back({fd, std::move(callback)});
 }
@@ -237,8 +257,7 @@ bool Loop::run_once(Duration timeout) {
   if (waiting()) timeout = Duration{0};
   std::vector<pollfd> fds{{impl.transport->fd(), POLLIN, 0}, {impl.signals.fd(), POLLIN, 0}};
   for (const Impl::Watch& watch : impl.watches) fds.push_back({watch.fd, POLLIN, 0});
-  if (impl.clock.wait(fds, std::max(timeout, Duration{0})) < 0 && errno != EINTR)
-    throw Error(std::string("poll: ") + std::strerror(errno));
+  impl.wait(fds, std::max(timeout, Duration{0}));
   if (fds[1].revents) {
     impl.ended_by = impl.signals.read_one();
     impl.stopped = impl.stopped || impl.ended_by != 0;

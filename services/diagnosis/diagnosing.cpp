@@ -26,10 +26,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Processor time of this thread since its start [us].
+/// Processor time of this process since its start [us].
 std::int64_t processor_us() {
   timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
   return std::int64_t{time.tv_sec} * 1'000'000 + time.tv_nsec / 1000;
 }
 
@@ -120,7 +120,8 @@ void Diagnosing::save() {
   if (poses == saved_poses_) return;  // nothing new
   const std::int64_t begin_mono_us = loop_.mono_us();
   try {
-    saved_->save(memory());
+    // a slow disk costs no message
+    loop_.receive_while([this, now = memory()] { saved_->save(now); });
     saved_poses_ = poses;
     save_error_.clear();
   } catch (const Error& error) {
@@ -179,7 +180,8 @@ void Diagnosing::judge(DiagnosedPair& pair) {
   pair.judged_seq = pair.newest->message.seq;
   pair.judged_until_us = pair.common_end_us();
   try {
-    Judgement judgement = services::judge(pair, *scale, rig_, options_);
+    Judgement judgement;
+    loop_.receive_while([&] { judgement = services::judge(pair, *scale, rig_, options_); });
     judgement.verdict.sender = heartbeat_.identity().name;
     loop_.publish(bus::verdict_channel(pair.config.a, pair.config.b), judgement.verdict);
     ++heartbeat_.counter("out");

@@ -35,8 +35,9 @@ struct DiagnosingOptions {
   /// must have shown the move (MountCheckOptions). An hour has 2,000 diagnoses. Study: docs/moves.md, "Live".
   double false_alarms = 4e-4;
   double shown_before = 2;
-  /// Messages of one sensor that may wait while a diagnosis takes its time: half a second at 2 kHz.
-  int queue_capacity = 1024;
+  /// Messages of one sensor that may wait while a diagnosis takes its time: ten seconds at 1 kHz, or a second
+  /// of a log at full speed. Study: docs/processes.md, "The diagnosis".
+  int queue_capacity = 10'000;
   DriveSampleOptions sample;
   UnseenOptions unseen;
   /// Time between two saved states [s], and the part of the time that saving may take. A slow disk is written

@@ -55,9 +55,9 @@ struct LoopCounts {
   TransportCounts transport;
 };
 
-/// The one thread of a process: messages, timers, signals and other file descriptors. Not thread-safe. What a
-/// handler throws leaves run(). Transport and clock can be handed in: then nothing here opens a socket,
-/// waits, or looks at any other clock.
+/// The loop of a process: messages, timers, signals and other file descriptors, on one thread but for
+/// receive_while(). Not thread-safe. What a handler throws leaves run(). Transport and clock can be handed
+/// in: then nothing here opens a socket, waits, or looks at any other clock.
 class Loop {
  public:
   using Handler = std::function<void(const Arrival&)>;
@@ -137,6 +137,12 @@ class Loop {
   void cancel(TimerId timer);
   /// When the next timer is due, of clock().mono_ns(); empty: there is none.
   std::optional<std::int64_t> next_timer_ns() const;
+
+  /// Runs work, and receives messages into their queues until it has ended: a computation of seconds costs no
+  /// message that its queue has room for. Calls no handler, timer or watch meanwhile. Work runs on a thread
+  /// of its own and must not use the loop. Where the transport has no fd(), or the system gives no thread,
+  /// work runs alone. Rethrows what work throws.
+  void receive_while(const Callback& work);
 
   /// Calls back while the file descriptor is readable (or hung up).
   void watch(int fd, Callback callback);
