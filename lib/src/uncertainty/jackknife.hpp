@@ -13,21 +13,12 @@
 
 namespace egocal::detail {
 
-/// Standard deviations by omitting blocks of unequal length m of n pairs (delete-m_j jack-knife, Busing et
-/// al. 1999).
-class Jackknife {
+/// Variances by omitting blocks of unequal length m of n pairs (delete-m_j jack-knife, Busing et al. 1999).
+class VarianceByBlocks {
  public:
-  /// Largest lag of the correlations that count, in blocks. Each further lag adds chance; with three instead
-  /// of four, noise on poses and on motions in drives of 20 motions is covered to 90.5 instead of 91.5 %
-  /// (docs/intervals.md).
-  static constexpr std::size_t most_lag = 4;
-
-  explicit Jackknife(double pairs) : pairs_(pairs) {}
-  /// difference: estimate without the block minus estimate with all. information: what part of what is known
-  /// of each direction the block holds, up to a common factor. parts: the difference in other coordinates, of
-  /// which the correlations are. The more independent they are, the less of the correlations is chance.
-  void leave_out(double block_pairs, const Vector6d& difference, const Vector6d& information,
-                 const Vector6d& parts) {
+  explicit VarianceByBlocks(double pairs) : pairs_(pairs) {}
+  /// difference: estimate without the block minus estimate with all.
+  void leave_out(double block_pairs, const Vector6d& difference) {
     const double h = pairs_ / block_pairs;
     const Vector6d pseudo = -(h - 1) * difference;  // pseudo value minus the estimate with all
     count_ += 1;
@@ -35,10 +26,6 @@ class Jackknife {
     squares_ += pseudo.cwiseAbs2() / (h - 1);
     cross_ += pseudo / (h - 1);
     weights_ += 1 / (h - 1);
-    information_ += information;
-    information_squares_ += information.cwiseAbs2();
-    neighbours_.add(parts);
-    changes_.add(difference);
   }
   double count() const { return count_; }
   /// Mean of (pseudo - mean)^2 / (h - 1).
@@ -50,6 +37,35 @@ class Jackknife {
     const double student = student_factor(count_ - 1);
     return student * student * spread();
   }
+
+ private:
+  double pairs_, count_ = 0, weights_ = 0;
+  Vector6d sum_ = Vector6d::Zero(), squares_ = Vector6d::Zero(), cross_ = Vector6d::Zero();
+};
+
+/// VarianceByBlocks, with what few blocks hold and what neighbours share.
+class Jackknife {
+ public:
+  /// Largest lag of the correlations that count, in blocks. Each further lag adds chance; with three instead
+  /// of four, noise on poses and on motions in drives of 20 motions is covered to 90.5 instead of 91.5 %
+  /// (docs/intervals.md).
+  static constexpr std::size_t most_lag = 4;
+
+  explicit Jackknife(double pairs) : by_blocks_(pairs) {}
+  /// difference: estimate without the block minus estimate with all. information: what part of what is known
+  /// of each direction the block holds, up to a common factor. parts: the difference in other coordinates, of
+  /// which the correlations are. The more independent they are, the less of the correlations is chance.
+  void leave_out(double block_pairs, const Vector6d& difference, const Vector6d& information,
+                 const Vector6d& parts) {
+    by_blocks_.leave_out(block_pairs, difference);
+    information_ += information;
+    information_squares_ += information.cwiseAbs2();
+    neighbours_.add(parts);
+    changes_.add(difference);
+  }
+  double count() const { return by_blocks_.count(); }
+  Vector6d spread() const { return by_blocks_.spread(); }
+  Vector6d variance() const { return by_blocks_.variance(); }
   /// How many equal blocks are as concentrated, see concentration(): the mean over the directions about which
   /// the blocks hold information. m below.
   double mean_equal_blocks(double least) const {
@@ -59,7 +75,7 @@ class Jackknife {
       sum += equal_blocks(i, least);
       directions += 1;
     }
-    return directions > 0 ? sum / directions : count_;
+    return directions > 0 ? sum / directions : count();
   }
   /// Lag-one correlation of errors that last, from that of what omitting a block changes: the mean over the
   /// parts that change at all. shared: what neighbours correlate by where no error lasts, which is taken off.
@@ -106,8 +122,8 @@ class Jackknife {
     Vector6d factor;
     for (int i = 0; i < 6; ++i) {
       const double m = equal_blocks(i, least_equal_blocks);
-      factor[i] = student_factor(m - m / count_) / student_factor(count_ - 1) *
-                  std::sqrt((m - 1) / m * count_ / (count_ - 1));
+      factor[i] = student_factor(m - m / count()) / student_factor(count() - 1) *
+                  std::sqrt((m - 1) / m * count() / (count() - 1));
     }
     return factor;
   }
@@ -116,7 +132,7 @@ class Jackknife {
   /// How many equal blocks are as concentrated in a direction.
   double equal_blocks(int direction, double least) const {
     const double squares = information_squares_[direction], sum = information_[direction];
-    return std::clamp(squares > 0 ? sum * sum / squares : count_, least, count_);
+    return std::clamp(squares > 0 ? sum * sum / squares : count(), least, count());
   }
 
   /// Standard error of the mean over the parts of a correlation at one lag, where nothing correlates.
@@ -187,9 +203,7 @@ class Jackknife {
     }
   };
 
-  double pairs_;
-  double count_ = 0, weights_ = 0;
-  Vector6d sum_ = Vector6d::Zero(), squares_ = Vector6d::Zero(), cross_ = Vector6d::Zero();
+  VarianceByBlocks by_blocks_;
   Vector6d information_ = Vector6d::Zero(), information_squares_ = Vector6d::Zero();
   Neighbours<most_lag> neighbours_;
   Neighbours<1> changes_;

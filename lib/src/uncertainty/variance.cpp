@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
+#include "linear_algebra/symmetric_eigen.hpp"
 #include "uncertainty/jackknife.hpp"
 #include "uncertainty/takes_off.hpp"
 
@@ -31,20 +33,28 @@ struct Blocks {
       Vector6d::Zero();  ///< in the same units; less than their sum where they touch
 };
 
-/// The variance of x_i under white noise is e_i'H^-1 e_i, to which a block contributes e_i'H^-1 H_k H^-1 e_i.
-/// transposed: forms of the blocks with the other triangle, where that is not the same.
-void set_information(Blocks& blocks, const std::vector<FourForms>& transposed, const TangentForm& all,
-                     const ShownDirections& directions) {
-  blocks.information.resize(blocks.forms.size());
+/// H^-1 e_i as columns; empty where the curvature has none.
+std::optional<Matrix6d> inverse_of(const TangentForm& all, const ShownDirections& directions) {
   Matrix6d factors = all.curvature;
-  if (!factorise(factors, directions.shown)) return;
-  Matrix6d inverse = Matrix6d::Zero();  // H^-1 e_i
+  if (!factorise(factors, directions.shown)) return std::nullopt;
+  Matrix6d inverse = Matrix6d::Zero();
   inverse.topRows(directions.shown) = directions.basis.transpose().topRows(directions.shown);
   for (int i = 0; i < 6; ++i) {
     Vector6d column = inverse.col(i);
     solve_factorised(factors, column, directions.shown);
     inverse.col(i) = column;
   }
+  return inverse;
+}
+
+/// The variance of x_i under white noise is e_i'H^-1 e_i, to which a block contributes e_i'H^-1 H_k H^-1 e_i.
+/// transposed: forms of the blocks with the other triangle, where that is not the same.
+void set_information(Blocks& blocks, const std::vector<FourForms>& transposed, const TangentForm& all,
+                     const ShownDirections& directions) {
+  blocks.information.resize(blocks.forms.size());
+  const std::optional<Matrix6d> found = inverse_of(all, directions);
+  if (!found) return;
+  const Matrix6d& inverse = *found;
   blocks.information_of_all = directions.basis.lazyProduct(inverse).diagonal();
   // x'Hx as the sum over a triangle of H, its entries beside the diagonal twice
   TriangleProducts products;
@@ -68,9 +78,10 @@ Vector6d independent_parts(const Matrix6d& factors, const Vector6d& step, int sh
 }
 
 /// Each leave-one-out minimum by one Newton step from the common one, in the directions that are seen.
-Jackknife jackknife_of(const Blocks& blocks, const TangentForm& all, double pairs,
-                       const ShownDirections& directions) {
-  Jackknife jackknife(pairs);
+/// take(pairs of the block, difference in a's frame, information, independent parts).
+template <typename Take>
+void leave_out_each(const Blocks& blocks, const TangentForm& all, const ShownDirections& directions,
+                    const Take& take) {
   Matrix6d factors = all.curvature;
   if (!factorise(factors, directions.shown)) factors.setIdentity();
   Fours<6> steps{};
@@ -85,10 +96,9 @@ Jackknife jackknife_of(const Blocks& blocks, const TangentForm& all, double pair
       step = TangentSpace::newton_step(all - forms.form(k), directions.shown);
       change = directions.basis.lazyProduct(step);
     }
-    jackknife.leave_out(blocks.pairs[i], change, column(blocks.information[i / four], k),
-                        independent_parts(factors, step, directions.shown));
+    take(blocks.pairs[i], change, column(blocks.information[i / four], k),
+         independent_parts(factors, step, directions.shown));
   }
-  return jackknife;
 }
 
 /// Adds some of four to a sum, one after the other.
@@ -125,8 +135,50 @@ std::vector<FourForms> forms_of(const std::vector<const Statistics*>& blocks, co
   return forms;
 }
 
-/// All blocks except those that are subtracted, around the minimiser. sum: of all, in their order.
-Blocks blocks_around(const Problem& problem, const ShownDirections& directions, TangentForm& sum) {
+/// Removes rounding: a coordinate without a part in any shown direction must not count in a mean, or a
+/// maximum, over the coordinates.
+ShownDirections without_rounding(ShownDirections directions) {
+  constexpr double least_part = 1e-6;  // far above rounding; less is not observable
+  for (int i = 0; i < 6; ++i)
+    if (!(directions.basis.row(i).head(directions.shown).norm() > least_part))
+      directions.basis.row(i).setZero();
+  return directions;
+}
+
+/// Principal axes, as columns, of what white noise makes of the translation and of the rotation. Unlike the
+/// axes of a's frame, these turn with it.
+struct PrincipalAxes {
+  std::array<Eigen::Matrix3d, 2> of_part{Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()};
+
+  PrincipalAxes() = default;
+  PrincipalAxes(const TangentForm& all, const ShownDirections& directions) {
+    const std::optional<Matrix6d> inverse = inverse_of(all, directions);
+    if (!inverse) return;
+    const Matrix6d covariance = directions.basis.lazyProduct(*inverse);
+    for (const int part : {0, 1}) {
+      const Eigen::Matrix3d own = covariance.block<3, 3>(3 * part, 3 * part);
+      of_part[static_cast<std::size_t>(part)] = symmetric_eigen<3>(0.5 * (own + own.transpose())).vectors;
+    }
+  }
+  /// Rows of a's axes in these.
+  template <typename Rows>
+  Rows along(const Rows& given) const {
+    Rows turned;
+    turned.template topRows<3>() = of_part[0].transpose().lazyProduct(given.template topRows<3>());
+    turned.template bottomRows<3>() = of_part[1].transpose().lazyProduct(given.template bottomRows<3>());
+    return turned;
+  }
+  ShownDirections along(ShownDirections directions) const {
+    const Matrix6d turned = along(directions.basis);
+    directions.basis = turned;
+    return without_rounding(directions);
+  }
+};
+
+/// All blocks except those that are subtracted, around the minimiser. sum: of all, in their order. axes:
+/// set to the principal axes, along which the blocks' information is counted; null: along those of a.
+Blocks blocks_around(const Problem& problem, const ShownDirections& directions, TangentForm& sum,
+                     PrincipalAxes* axes) {
   std::vector<const Statistics*> staying, taking_off;
   staying.reserve(problem.blocks.size());
   for (const Statistics& block : problem.blocks) (takes_off(block) ? taking_off : staying).push_back(&block);
@@ -145,10 +197,11 @@ Blocks blocks_around(const Problem& problem, const ShownDirections& directions, 
       i += count;
     }
   }
+  if (axes) *axes = PrincipalAxes(sum, directions);
   set_information(blocks,
                   directions.space.starts_with_translations() ? std::vector<FourForms>()
                                                               : forms_of(staying, directions.space, true),
-                  sum, directions);
+                  sum, axes ? axes->along(directions) : directions);
   return blocks;
 }
 
@@ -264,14 +317,31 @@ double count_once(Blocks& blocks, const TangentForm& all, int shown) {
   return std::min(times - 1, 1.0);
 }
 
-/// Removes rounding: a coordinate without a part in any shown direction must not count in a mean, or a
-/// maximum, over the coordinates.
-ShownDirections without_rounding(ShownDirections directions) {
-  constexpr double least_part = 1e-6;  // far above rounding; less is not observable
-  for (int i = 0; i < 6; ++i)
-    if (!(directions.basis.row(i).head(directions.shown).norm() > least_part))
-      directions.basis.row(i).setZero();
-  return directions;
+/// Variances by which settings of one drive are compared, by their sums over the axes: these must not depend
+/// on how the axes of a are turned. All axes of the translation have one factor of concentration, and all of
+/// the rotation: that of the sum along principal axes.
+Vector6d compared_variance(const Problem& problem, double pairs, const ShownDirections& directions,
+                           const ObservabilityOptions& options) {
+  TangentForm sum;
+  PrincipalAxes axes;
+  Blocks blocks = blocks_around(problem, directions, sum, &axes);
+  if (blocks.pairs.size() < problem.blocks.size()) count_once(blocks, sum, directions.shown);
+  VarianceByBlocks in_frame(pairs);
+  Jackknife principal(pairs);
+  leave_out_each(
+      blocks, sum, directions,
+      [&](double of_block, const Vector6d& difference, const Vector6d& information, const Vector6d& parts) {
+        in_frame.leave_out(of_block, difference);
+        principal.leave_out(of_block, axes.along(difference), information, parts);
+      });
+  const Vector6d factors = principal.concentration(options.least_equal_blocks).cwiseAbs2();
+  const Vector6d along = principal.variance();
+  Vector6d variance = in_frame.variance();
+  for (const int part : {0, 3}) {
+    const double all = along.segment<3>(part).sum();
+    if (all > 0) variance.segment<3>(part) *= factors.segment<3>(part).dot(along.segment<3>(part)) / all;
+  }
+  return variance;
 }
 
 }  // namespace
@@ -280,15 +350,17 @@ Vector6d detail::variance_by_blocks(const Problem& problem, double pairs,
                                     const ShownDirections& all_directions, ErrorCorrelation errors,
                                     const ObservabilityOptions& options) {
   const ShownDirections directions = without_rounding(all_directions);
+  if (errors == ErrorCorrelation::independent) return compared_variance(problem, pairs, directions, options);
   TangentForm sum;
-  Blocks blocks = blocks_around(problem, directions, sum);
+  Blocks blocks = blocks_around(problem, directions, sum, nullptr);
   const double overlap =
       blocks.pairs.size() < problem.blocks.size() ? count_once(blocks, sum, directions.shown) : 0;
-  const Jackknife single = jackknife_of(blocks, sum, pairs, directions);
-  const Vector6d variance =
-      single.concentration(options.least_equal_blocks).cwiseAbs2().cwiseProduct(single.variance());
-  if (errors == ErrorCorrelation::independent) return variance;
-  return variance.cwiseProduct(of_memory(single, overlap, options));
+  Jackknife single(pairs);
+  leave_out_each(blocks, sum, directions, [&](const auto&... of_block) { single.leave_out(of_block...); });
+  return single.concentration(options.least_equal_blocks)
+      .cwiseAbs2()
+      .cwiseProduct(single.variance())
+      .cwiseProduct(of_memory(single, overlap, options));
 }
 
 }  // namespace egocal
