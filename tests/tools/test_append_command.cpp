@@ -63,6 +63,38 @@ TEST_F(AppendCommand, AMountThatDiffersBetweenTwoDrivesIsNamedSo) {
   EXPECT_TRUE(same["findings"].empty()) << same["findings"];
 }
 
+// Each drive by itself was contradictory, and both together were "good", with an answer 0.8 deg off.
+TEST_F(AppendCommand, AFaultThatEachDriveShowsIsNotHiddenByTheOther) {
+  const std::string creep = "--creep camera=10:110:0,0,0,0,0,3";
+  const std::string both = drive_of(1, 0, creep) + " --append" + drive_of(2, 0, creep);
+  for (const int seed : {1, 2}) {
+    const nlohmann::json alone = run("solve --json" + drive_of(seed, 0, creep)).object();
+    EXPECT_EQ(alone["verdict"], "contradictory") << alone["reason"];
+  }
+  const Result result = run("solve --json" + both);
+  EXPECT_EQ(result.code, 3);
+  const nlohmann::json found = result.object();
+  EXPECT_EQ(found["verdict"], "contradictory");
+  const std::string reason = found["reason"];
+  EXPECT_TRUE(reason.starts_with("Drive 1 (") || reason.starts_with("Drive 2 (")) << reason;
+  EXPECT_NE(reason.find(" by itself: "), std::string::npos) << reason;
+  EXPECT_EQ(found["findings"][0]["code"], "mount_moved");
+  EXPECT_TRUE(found["findings"][0]["remedy"].get<std::string>().starts_with("Correct the files of drive "))
+      << found["findings"][0];
+}
+
+// The hour between two drives counted as driving: 24,000 instead of 700 s were left.
+TEST_F(AppendCommand, TheTimeUntilAGoalIsThatOfDriving) {
+  const auto left = [&](const std::string& drives) {
+    const nlohmann::json found = run("solve --json --goal 0.001deg,0.1mm" + drives).object();
+    EXPECT_FALSE(found["goal"]["reached"]);
+    return found["goal"]["seconds_left"].get<double>();
+  };
+  const double one = left(drive_of(1, 0)), two = left(drive_of(1, 0) + " --append" + drive_of(2, 0));
+  EXPECT_LT(two, 3 * one);
+  EXPECT_GT(two, one / 3);
+}
+
 bool is_of_mounts(const nlohmann::json& text) {
   return text.get<std::string>().starts_with("The mounts of drive 1 (");
 }

@@ -152,6 +152,13 @@ std::string Drives::place_of(double seconds) const {
   return fmt::format("between {} and {}", drive.names.front(), drives_[k + 1].names.front());
 }
 
+double Drives::driven_part() const {
+  double driven = 0;
+  for (const Drive& drive : drives_) driven += drive.to - drive.from;
+  const double all = drives_.back().to - drives_.front().from;
+  return all > 0 ? driven / all : 1;
+}
+
 void Drives::require_motions(std::size_t sensor_a, std::size_t sensor_b, const Trajectory& a,
                              const Trajectory& b, PairingOptions pairing) const {
   if (drives_.size() < 2) return;

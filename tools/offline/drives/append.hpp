@@ -33,6 +33,10 @@ class Drives {
   /// between a.tum and b.tum". Empty of a single drive.
   std::string place_of(double seconds) const;
 
+  /// The time of all drives as a part of that from the first begin to the last end, which has an hour between
+  /// two of them. The time until a goal is reached is in proportion to the time driven.
+  double driven_part() const;
+
   /// Throws Error where a drive gives two sensors no motion pair: it would be ignored without a word. a, b:
   /// the sensors' streams as they are paired, with as many poses as were read.
   void require_motions(std::size_t sensor_a, std::size_t sensor_b, const Trajectory& a, const Trajectory& b,

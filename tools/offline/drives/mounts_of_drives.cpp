@@ -128,6 +128,38 @@ bool is_shown_by(const std::vector<std::optional<Calibration>>& alone, const Fin
   });
 }
 
+bool is_tolerated(const MountsDiffer& two, const DiagnosisOptions& options) {
+  return two.shown.turn <= options.tolerance_rotation && two.shown.shift <= options.tolerance_translation;
+}
+
+/// What only single drives show. Slow changes of each drive cancel in the answer to all of them, or are small
+/// against what an hour between them allows.
+std::vector<MountsDiffer> name_what_single_drives_show(const Drives& drives,
+                                                       const std::vector<std::optional<Calibration>>& alone,
+                                                       std::vector<MountsDiffer> differ,
+                                                       const DiagnosisOptions& options,
+                                                       Calibration& calibration) {
+  std::vector<Finding> findings;
+  const auto is_about = [&](Verdict verdict, const std::string& reason) {
+    if (verdict <= calibration.verdict) return;
+    calibration.verdict = verdict;
+    calibration.reason = reason;
+  };
+  for (std::size_t k = 0; k < alone.size(); ++k) {
+    if (!alone[k] || is_usable(alone[k])) continue;
+    OwnFault fault = own_fault_of_drive(drives, k, *alone[k]);
+    is_about(alone[k]->verdict, fault.reason);
+    if (fault.finding) findings.push_back(*std::move(fault.finding));
+  }
+  std::erase_if(differ, [&](const MountsDiffer& two) { return is_tolerated(two, options); });
+  for (const MountsDiffer& two : differ) {
+    is_about(Verdict::contradictory, two.finding.message);
+    findings.push_back(two.finding);
+  }
+  calibration.findings.insert(calibration.findings.begin(), findings.begin(), findings.end());
+  return differ;
+}
+
 }  // namespace
 
 std::vector<MountsDiffer> name_what_drives_differ_in(const Drives& drives, std::size_t sensor_a,
@@ -135,13 +167,15 @@ std::vector<MountsDiffer> name_what_drives_differ_in(const Drives& drives, std::
                                                      const Trajectory& b, const CalibrationOptions& options,
                                                      Calibration& calibration,
                                                      const MountsOfDrivesOptions& mounts) {
-  if (drives.size() < 2 || calibration.verdict < Verdict::doubtful) return {};
+  if (drives.size() < 2) return {};
   const double scale = calibration.scale ? calibration.scale->scale : 1;
   const bool metres = unit_of_scaled(options.diagnosis.unit, scale) == LengthUnit::metres;
   std::vector<std::optional<Calibration>> alone(drives.size());
   for (std::size_t k = 0; k < drives.size(); ++k)
     alone[k] = of_drive(drives.part(a, k, sensor_a), drives.part(b, k, sensor_b), options);
-  const std::vector<MountsDiffer> differ = compared(drives, alone, metres, mounts);
+  std::vector<MountsDiffer> differ = compared(drives, alone, metres, mounts);
+  if (calibration.verdict < Verdict::doubtful)
+    return name_what_single_drives_show(drives, alone, std::move(differ), options.diagnosis, calibration);
   Faults faults = faults_of(drives, alone);
   if (differ.empty() && faults.findings.empty()) return {};
   std::vector<Finding> findings = std::move(faults.findings);
@@ -149,8 +183,7 @@ std::vector<MountsDiffer> name_what_drives_differ_in(const Drives& drives, std::
   bool contradictory = faults.contradictory;
   for (const MountsDiffer& two : differ) {
     findings.push_back(two.finding);
-    contradictory = contradictory || two.shown.turn > options.diagnosis.tolerance_rotation ||
-                    two.shown.shift > options.diagnosis.tolerance_translation;
+    contradictory = contradictory || !is_tolerated(two, options.diagnosis);
   }
   if (contradictory) calibration.verdict = Verdict::contradictory;
   // a drive without a fault that has a name may have one that all drives together show

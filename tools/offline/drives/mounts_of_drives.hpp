@@ -26,14 +26,16 @@ struct MountsDiffer {
   Finding finding;  ///< that says so
 };
 
-/// Where the drives together are doubtful or contradictory, each is calibrated by itself, and each that is
-/// usable is compared with the usable one before it. A mount that differs between them is a finding without a
-/// time, "The mounts of drive 1 (a.tum) and drive 2 (a2.tum) differ by 5.00 deg.", and is handed back. A
-/// drive that is not usable beside others that are is named with its own fault (fault_of_drive()), before
-/// them. Both take the place of what only all drives together show, a creep or wrong axes; where some drive
-/// is not usable and has no such fault, all former findings stay beside them: they may be of that drive.
-/// Where the lengths are not metres, only rotations are compared. sensor_a, sensor_b: of the drives; a, b,
-/// options: as they were calibrated; calibration: the answer to all of them.
+/// Each drive is calibrated by itself, and each that is usable is compared with the usable one before it.
+/// Where the drives together are usable, one that is not gives them its verdict and reason
+/// (own_fault_of_drive()), and a mount that differs by more than is tolerated makes them contradictory. Where
+/// the drives together are doubtful or contradictory, a mount that differs is a finding without a time, "The
+/// mounts of drive 1 (a.tum) and drive 2 (a2.tum) differ by 5.00 deg.", and is handed back. A drive that is
+/// not usable beside others that are is named with its own fault (fault_of_drive()), before them. Both take
+/// the place of what only all drives together show, a creep or wrong axes; where some drive is not usable and
+/// has no such fault, all former findings stay beside them: they may be of that drive. Where the lengths are
+/// not metres, only rotations are compared. sensor_a, sensor_b: of the drives; a, b, options: as they were
+/// calibrated; calibration: the answer to all of them.
 std::vector<MountsDiffer> name_what_drives_differ_in(const Drives& drives, std::size_t sensor_a,
                                                      std::size_t sensor_b, const Trajectory& a,
                                                      const Trajectory& b, const CalibrationOptions& options,

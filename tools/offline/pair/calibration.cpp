@@ -16,6 +16,7 @@
 #include "offline/common/answer_or_warn.hpp"
 #include "offline/common/beside.hpp"
 #include "offline/common/with_nominal_part.hpp"
+#include "offline/drives/goal_of_drives.hpp"
 #include "offline/drives/mounts_of_drives.hpp"
 #include "offline/pair/as_solved.hpp"
 #include "offline/pair/baseline_answer.hpp"
@@ -123,6 +124,7 @@ void answer_sensors(const SolveRequest& request, SolveResult& result) {
   if (std::string warning = scale_warning(request, result); !warning.empty())
     result.warnings.push_back(std::move(warning));
   name_what_drives_differ_in(drives, 0, 1, motions.a, motions.b, options, result.calibration);
+  count_driving_only(drives, result.calibration);
   word_for_user(drives, terms, result.calibration);
   if (!motions.a.empty()) result.a = span_of(motions.a);
   if (!motions.b.empty()) result.b = span_of(motions.b);

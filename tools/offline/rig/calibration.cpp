@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include "offline/rig/calibration.hpp"
+#include "offline/drives/goal_of_drives.hpp"
 
 #include <algorithm>
 #include <mutex>
@@ -119,6 +120,7 @@ PairOutcome calibrate_pair(const RigPairSettings& pair, const std::vector<Trajec
       pair.nominal_part, pair.turned ? NominalOf::a_in_b : NominalOf::b_in_a, options,
       [&](const CalibrationOptions& of_run) { return calibrate(a, b, of_run); }, outcome.note));
   outcome.mounts = name_what_drives_differ_in(drives, pair.a, pair.b, a, b, options, calibration);
+  count_driving_only(drives, calibration);
   calibration.time_offset_applied = clocks[pair.b].offset - clocks[pair.a].offset;
   for (const std::size_t k : {pair.a, pair.b}) put_rival_offset(clocks[k], names[k], calibration);
   return outcome;
