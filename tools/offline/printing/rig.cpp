@@ -192,6 +192,19 @@ std::string largest_stddev(const NamedExtrinsic& edge, std::size_t from, double 
   return fmt::format("{:.3f} {}", unit * largest, name);
 }
 
+/// The goals of all pairs and the manoeuvre that helps most; nothing where none is stated.
+std::string goals_text(const RigReport& report) {
+  std::string text;
+  for (std::size_t i = 0; i < report.pairs.size(); ++i) {
+    const std::optional<Goal>& goal = report.pairs[i].goal;
+    if (!goal) continue;
+    const RigPairAnswer& pair = report.solution.pairs[i];
+    text += fmt::format("goal          {}: {}\n", label_of(report, pair.a, pair.b), goal_in_words(*goal));
+    if (!goal->next.empty()) text += fmt::format("next          {}\n", goal->next);
+  }
+  return text;
+}
+
 std::string names_apart(const RigReport& report) {
   std::string names;
   for (const std::size_t sensor : report.apart) names += (names.empty() ? "" : ", ") + report.names[sensor];
@@ -285,8 +298,8 @@ std::string rig_text(const RigReport& report) {
         fmt::format("{}{}\n              cure: {}\n", finding.certain ? "finding       " : "possible      ",
                     finding.message, finding.remedy);
   if (report.blamed) text += fmt::format("blamed        {}\n", report.names[*report.blamed]);
-  text +=
-      unsolved_text(report) + loops_text(report) + "\n" + pairs_text(report, width) + set_text(report, width);
+  text += unsolved_text(report) + loops_text(report) + goals_text(report) + "\n" + pairs_text(report, width) +
+          set_text(report, width);
   text.pop_back();
   return text;
 }

@@ -59,16 +59,18 @@ std::string trust_text(const Calibration& calibration) {
   if (const std::string fit = fit_in_words(calibration.fit); !fit.empty())
     text += fmt::format("fit           {}\n", fit);
   if (calibration.goal) {
-    const Goal& goal = *calibration.goal;
-    text += goal.reached
-                ? std::string("goal          reached\n")
-                : fmt::format("goal          missing: {}{}\n", fmt::join(goal.missing, ", "),
-                              goal.seconds_left
-                                  ? fmt::format("; about {:.0f} s more of this driving", *goal.seconds_left)
-                                  : "; more of this driving does not help");
-    if (!goal.next.empty()) text += fmt::format("next          {}\n", goal.next);
+    text += fmt::format("goal          {}\n", goal_in_words(*calibration.goal));
+    if (!calibration.goal->next.empty()) text += fmt::format("next          {}\n", calibration.goal->next);
   }
   return text;
+}
+
+std::string goal_in_words(const Goal& goal) {
+  if (goal.reached) return "reached";
+  return fmt::format("missing: {}{}", fmt::join(goal.missing, ", "),
+                     goal.seconds_left
+                         ? fmt::format("; about {:.0f} s more of this driving", *goal.seconds_left)
+                         : "; more of this driving does not help");
 }
 
 }  // namespace egocal::tools

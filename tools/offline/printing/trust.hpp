@@ -14,5 +14,7 @@ nlohmann::ordered_json trust_json(const Calibration& calibration);
 std::string trust_text(const Calibration& calibration);
 /// "0.07 deg, 1.5 cm (0.3 % of the distance) a motion of 1.8 s; ..."; empty: there is none.
 std::string fit_in_words(const Fit& fit);
+/// "reached", or "missing: yaw; about 40 s more of this driving".
+std::string goal_in_words(const Goal& goal);
 
 }  // namespace egocal::tools

@@ -185,7 +185,9 @@ void choose_tree(RigReport& report) {
   const auto is_planar = [](const Calibration& calibration) {
     return calibration.problem.mode == Mode::planar;
   };
-  if (std::any_of(report.pairs.begin(), report.pairs.end(), is_planar))
+  if (report.names.size() == 2)
+    report.why_not_joint = "there is one pair only";
+  else if (std::any_of(report.pairs.begin(), report.pairs.end(), is_planar))
     report.why_not_joint = "there is no joint answer in planar mode";
   else if (!report.unsolved.empty())
     report.why_not_joint = "not all pairs have an answer";

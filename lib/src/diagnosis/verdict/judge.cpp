@@ -284,10 +284,15 @@ Opinion of_fit(const Misfit& misfit, const Answered& answered, const DiagnosisOp
   const PairingCounts& counts = answered.counts;
   const double incongruent =
       static_cast<double>(counts.rejected[static_cast<std::size_t>(Rejection::screw_congruence)]);
-  if (2 * incongruent > static_cast<double>(counts.synchronised))
+  if (counts.synchronised > 0 && 2 * incongruent > static_cast<double>(counts.synchronised))
     return {Verdict::doubtful,
             format("Most poses were rejected: %.0f of %.0f make motions that no rigid mounting explains.",
                    incongruent, static_cast<double>(counts.synchronised))};
+  // of motion pairs that were given the poses are not known
+  const double given = static_cast<double>(counts.matched + counts.outliers) + incongruent;
+  if (counts.synchronised == 0 && 2 * incongruent > given)
+    return {Verdict::doubtful, format("Most motion pairs were rejected: %.0f of %.0f fit no rigid mounting.",
+                                      incongruent, given)};
   return {};
 }
 

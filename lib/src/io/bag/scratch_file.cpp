@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <system_error>
 
 #include "egocal/error.hpp"
 #include "egocal/io/whole_file.hpp"
@@ -16,7 +17,13 @@
 namespace egocal::detail {
 
 ScratchFile::ScratchFile(ByteSource& source) {
-  path_ = (std::filesystem::temp_directory_path() / "egocal_unpacked_XXXXXX").string();
+  std::error_code no_folder;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(no_folder);
+  if (no_folder)
+    throw error_at(
+        source.file(), 0, "",
+        "is a packed database, and TMPDIR is no folder that it can be unpacked to; set TMPDIR to one");
+  path_ = (folder / "egocal_unpacked_XXXXXX").string();
   const int descriptor = ::mkostemp(path_.data(), O_CLOEXEC);
   if (descriptor < 0)
     throw error_at(source.file(), 0, "",
