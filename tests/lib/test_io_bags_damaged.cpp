@@ -56,6 +56,10 @@ TEST(Bags, MessagesWithoutAStampTakeTheTimeOfRecording) {
   TrajectoryReading reading = read_trajectory_file(folder.file("a.mcap", testing::mcap_file(messages, {})));
   expect_equal(reading.trajectory, {trajectory.begin() + 1, trajectory.end()}, "one");
   EXPECT_EQ(reading.losses.refused, 1u);
+  messages[1].data = unstamped(1);  // a driver that starts up: they had the times of recording
+  reading = read_trajectory_file(folder.file("two.mcap", testing::mcap_file(messages, {})));
+  expect_equal(reading.trajectory, {trajectory.begin() + 2, trajectory.end()}, "two");
+  EXPECT_EQ(reading.losses.refused, 2u);
   // recorded as long after its time as the second one
   Trajectory from_zero = trajectory;
   for (std::size_t i = 0; i < from_zero.size(); ++i)

@@ -126,43 +126,42 @@ bool BagRecording::begins_at_zero(const Usable& first, const Usable& second) {
          most_ns;
 }
 
-/// Takes a pose at the time of its header, or at that of recording where no message of the stream has
-/// another. A simulation that begins at zero has one message that looks unstamped, at its beginning: the
-/// second one decides.
+/// Takes a pose at the time of its header, or at that of recording where the messages of the stream have
+/// none. A simulation that begins at zero has one message that looks unstamped, at its beginning: the second
+/// one decides.
 void BagRecording::take_usable(const Usable& usable, std::size_t stream, const TakePose& take) {
+  using Decision = Stamps::Decision;
   if (stream >= stamps_.size()) stamps_.resize(stream + 1);
   Stamps& stamps = stamps_[stream];
   const bool stamped = usable.stamp_ns != 0;
   if (streams_[stream].fixed)
     return take_at(stamped ? usable.stamp_ns : usable.log_time_ns, usable, stream, take);
-  ++(stamped ? stamps.stamped : stamps.unstamped);
+  const auto refuse_one = [&](const char* reason) { refuse(streams_[stream].topic, reason); };
   constexpr const char* without = "it has no time stamp, others of the topic do";
+  if (stamped && stamps.decision == Decision::unstamped)
+    return refuse_one("it has a time stamp, others of the topic do not");
   if (stamped) {
-    if (stamps.undecided) {
-      if (begins_at_zero(*stamps.undecided, usable))
-        take_at(0, *stamps.undecided, stream, take);
-      else
-        refuse(streams_[stream].topic, without);
-    }
-    stamps.undecided.reset();
+    stamps.decision = Decision::stamped;
+    const std::vector<Usable> undecided = std::exchange(stamps.undecided, {});
+    if (undecided.size() == 1 && begins_at_zero(undecided.front(), usable))
+      take_at(0, undecided.front(), stream, take);
+    else
+      for (std::size_t i = 0; i < undecided.size(); ++i) refuse_one(without);
     return take_at(usable.stamp_ns, usable, stream, take);
   }
-  if (stamps.stamped > 0) return refuse(streams_[stream].topic, without);
-  if (stamps.unstamped == 1) {
-    stamps.undecided = usable;
-    return;
-  }
+  if (stamps.decision == Decision::stamped) return refuse_one(without);
+  stamps.undecided.push_back(usable);
+  if (stamps.decision == Decision::open && stamps.undecided.size() < most_undecided) return;
+  stamps.decision = Decision::unstamped;
   take_undecided(stream, take);
-  ++unstamped_;
-  take_at(usable.log_time_ns, usable, stream, take);
 }
 
-/// The first message of a stream that has no stamps at all.
+/// The first messages of a stream that has no stamps.
 void BagRecording::take_undecided(std::size_t stream, const TakePose& take) {
-  const std::optional<Usable> first = std::exchange(stamps_[stream].undecided, std::nullopt);
-  if (!first) return;
-  ++unstamped_;
-  take_at(first->log_time_ns, *first, stream, take);
+  for (const Usable& usable : std::exchange(stamps_[stream].undecided, {})) {
+    ++unstamped_;
+    take_at(usable.log_time_ns, usable, stream, take);
+  }
 }
 
 void BagRecording::take_at(std::int64_t time_ns, const Usable& usable, std::size_t stream,

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -59,11 +58,13 @@ class BagRecording : public Recording {
   void take_undecided(std::size_t stream, const TakePose& take);
   void refuse(const std::string& topic, const std::string& reason);
 
-  /// How many messages of a stream have a time in their header.
+  /// Whether messages of a stream have a time in their header. The first one that has, or most_undecided that
+  /// have none, decide.
   struct Stamps {
-    std::uint64_t stamped = 0, unstamped = 0;
-    std::optional<Usable> undecided{};  ///< the first message, which has none
+    enum class Decision { open, stamped, unstamped } decision = Decision::open;
+    std::vector<Usable> undecided{};  ///< the first messages, which have none
   };
+  static constexpr std::size_t most_undecided = 1000;  ///< 200 kB a stream; drivers start up within seconds
 
   std::string format_;
   Parts parts_;
