@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "commands/commands.hpp"
 #include "commands/request_options.hpp"
@@ -11,8 +12,10 @@
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/alignment.hpp"
 #include "egocal/in_words.hpp"
+#include "egocal/pairing/time_offset.hpp"
 #include "offline/pair/unit.hpp"
 #include "offline/printing/provenance.hpp"
+#include "offline/printing/report.hpp"
 #include "offline/printing/trust.hpp"
 #include "warnings.hpp"
 
@@ -71,6 +74,7 @@ std::string as_text(const SolveResult& result, const Alignment& alignment) {
   if (calibration.scale_applied != 1)
     text += fmt::format("scale         {:.6g} times the lengths of {}\n", calibration.scale_applied,
                         result.scale_side == Side::a ? "a" : "b");
+  text += clocks_text(calibration);
   text += fmt::format("agreement     {} compared, RMS {:.4f} {}, {:.4f} deg\n",
                       counted(alignment.compared, "pose"), alignment.rms_translation, "[" + unit + "]",
                       alignment.rms_rotation * degrees);
@@ -83,8 +87,11 @@ void run_align(const AlignOptions& options, const std::string& command_line) {
   const SolveResult result = calibrate_offline(request);
   print_warnings(result.warnings);
   const Calibration& calibration = result.calibration;
+  const std::optional<TimeOffset>& offset = calibration.time_offset;
   const Alignment alignment =
-      align(result.trajectory_a, result.trajectory_b, calibration.T_a_b, calibration.time_offset_applied);
+      offset ? align(result.trajectory_a, on_clock_of_a(*offset, result.trajectory_b), calibration.T_a_b, 0)
+             : align(result.trajectory_a, result.trajectory_b, calibration.T_a_b,
+                     calibration.time_offset_applied);
   if (!options.out.empty()) write_tum(options.out, alignment.b_as_a);
   if (options.json) {
     fmt::print("{}\n", as_json(request, result, alignment, command_line)
