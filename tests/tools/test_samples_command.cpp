@@ -79,6 +79,20 @@ TEST_F(SamplesCommand, GivesBothPosesAndTheWrongRow) {
   }
 }
 
+// a is the file of the hand, and its name was that of the frame: a URDF hung the camera on the hand.
+TEST_F(SamplesCommand, BesideTheArmTheAnswerIsInTheBase) {
+  write(true);
+  const std::string text = solve("--samples --eye-to-hand").out;
+  EXPECT_NE(text.find("T_a_b, pose of the camera in the base (p_base = T_a_b p_camera)"), std::string::npos);
+  EXPECT_NE(text.find("in the frame of the base"), std::string::npos) << text;
+  const std::string urdf = solve("--samples --eye-to-hand --format urdf").out;
+  EXPECT_NE(urdf.find("<parent link=\"base\"/>"), std::string::npos) << urdf;
+  EXPECT_NE(urdf.find("<child link=\"camera\"/>"), std::string::npos) << urdf;
+  EXPECT_NE(
+      solve("--samples --eye-to-hand --format urdf --frame-a world").out.find("<parent link=\"world\"/>"),
+      std::string::npos);
+}
+
 TEST_F(SamplesCommand, NamesOneWrongRowInTheSingular) {
   write(false);
   EXPECT_NE(solve("--samples").out.find(", 1 wrong and not used: row 1\n"), std::string::npos);

@@ -154,6 +154,14 @@ TEST_F(ScaleCommand, AScaleThatDriftsIsFollowed) {
   EXPECT_LT(object["error_rotation_deg"], 0.2);
   EXPECT_LT(object["error_translation_m"], 0.05);
   EXPECT_TRUE(object["certified"]);
+  // the file and the page had the mean only, "estimated and proven"
+  const std::string streams = " --scale auto " + drive + "/camera.tum " + drive + "/lidar.tum";
+  const std::string yaml = run("solve --format yaml" + streams).out;
+  EXPECT_NE(yaml.find("  certified: false\n  changes: true  #"), std::string::npos) << yaml;
+  ASSERT_EQ(run("report --out " + folder.path("page.html") + streams).code, 0);
+  const std::string page = content_of(folder.path("page.html"));
+  EXPECT_NE(page.find("changes along the drive"), std::string::npos);
+  EXPECT_NE(page.find("drifts from "), std::string::npos);
 }
 
 TEST_F(ScaleCommand, TheScaleOfTwoDrivesIsOne) {

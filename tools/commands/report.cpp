@@ -11,6 +11,7 @@
 #include "egocal/io/whole_file.hpp"
 #include "offline/pair/unit.hpp"
 #include "offline/printing/samples.hpp"
+#include "offline/printing/scale.hpp"
 #include "warnings.hpp"
 
 namespace egocal::tools {
@@ -36,6 +37,8 @@ ReportInput report_input(const SolveRequest& request, SolveResult result, const 
   input.b = std::move(result.trajectory_b);
   input.pairs = std::move(result.fit_pairs);
   input.unit = unit_of_lengths(result);
+  input.eye_to_hand = result.eye_to_hand;
+  input.scale_course = scale_course_text(result);
   input.options = request.calibration;
   input.options.pairing.time_offset = result.calibration.time_offset_applied;
   // the streams of the result are as they were solved

@@ -30,15 +30,25 @@ struct SolveOptions {
   std::string format, out, frame_a = "a", frame_b = "b";
 };
 
+/// With --eye-to-hand a is the file of the hand, and the answer is the pose of the camera in the base.
+SolveOptions with_names_of_arm(SolveOptions options) {
+  if (!options.request.eye_to_hand) return options;
+  if (options.frame_a == SolveOptions().frame_a) options.frame_a = "base";
+  if (options.frame_b == SolveOptions().frame_b) options.frame_b = "camera";
+  return options;
+}
+
 /// The answer as a file for another program; what its reader must know goes to standard error as well.
 void write_extrinsic(const SolveOptions& options, const SolveResult& result) {
   const Calibration& calibration = result.calibration;
   NamedExtrinsic extrinsic = named_extrinsic(options.frame_a, options.frame_b, calibration);
   if (const std::optional<ScaleSolution>& scale = calibration.scale)
-    extrinsic.scale =
-        NamedScale{result.scale_side == Side::a ? options.frame_a : options.frame_b, scale->scale,
-                   scale->observable ? scale->stddev : std::numeric_limits<double>::infinity(),
-                   scale->certified, in_metres(result)};
+    extrinsic.scale = NamedScale{result.scale_side == Side::a ? options.frame_a : options.frame_b,
+                                 scale->scale,
+                                 scale->observable ? scale->stddev : std::numeric_limits<double>::infinity(),
+                                 scale->certified && !result.course,
+                                 in_metres(result),
+                                 result.course.has_value()};
   for (const std::string& line : remarks(extrinsic, calibration)) say("egocal: " + line);
   if (result.course) say("egocal: the scale changes along the drive: its mean is stated");
   if (!result.note.empty()) say("egocal: " + result.note);
@@ -62,10 +72,11 @@ std::string solution_json(const SolveOptions& options, const SolveRequest& reque
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-void run_solve(const SolveOptions& options, const std::string& command_line) {
+void run_solve(const SolveOptions& typed, const std::string& command_line) {
+  const SolveOptions options = with_names_of_arm(typed);
   if (options.json && !options.format.empty() && options.out.empty())
     throw cli::UsageError("--format: takes the place of --json on standard output; give its file by --out");
-  const bool named = options.frame_a != SolveOptions().frame_a || options.frame_b != SolveOptions().frame_b;
+  const bool named = typed.frame_a != SolveOptions().frame_a || typed.frame_b != SolveOptions().frame_b;
   if (named && is_rig(options.rig))
     throw cli::UsageError("--frame-a, --frame-b: go with two sensors; those of a rig have names");
   if (named && !options.json && options.format.empty() && options.out.empty())

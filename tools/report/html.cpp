@@ -87,9 +87,9 @@ std::string optimality(const Certificate& certificate) {
   return "undecided: too imprecise to prove or disprove";
 }
 
-std::string uncertainty(const Calibration& calibration) {
-  std::string table =
-      "<table>\n<tr><th>direction, in the frame of a</th><th>one standard deviation</th></tr>\n";
+std::string uncertainty(const Calibration& calibration, const char* frame) {
+  std::string table = fmt::format(
+      "<table>\n<tr><th>direction, in the frame of {}</th><th>one standard deviation</th></tr>\n", frame);
   const std::array<Backing, 6> backing = backing_of(calibration);
   for (std::size_t i = 0; i < 6; ++i) {
     const double stddev = calibration.observability.stddev[i];
@@ -121,6 +121,10 @@ std::string clock_rows(const Calibration& calibration) {
   if (calibration.time_offset)
     table += row("", fmt::format("estimated: &plusmn; {:.4f} s, correlation of the turning rates {:.2f}",
                                  calibration.time_offset->stddev, calibration.time_offset->correlation));
+  if (calibration.time_offset && calibration.time_offset->drifts)
+    table += row("clock drift", fmt::format("{:.1f} &plusmn; {:.1f} us/s of b, corrected",
+                                            1e6 * calibration.time_offset->rate,
+                                            1e6 * calibration.time_offset->rate_stddev));
   return table;
 }
 
@@ -147,7 +151,10 @@ std::string settings(const ReportInput& input) {
   table += row("mode", calibration.problem.mode == Mode::planar ? "planar" : "three-dimensional");
   table += rows_of_motions(input);
   const char* scaled = input.options.scale_side == Side::a ? "a" : "b";
-  if (calibration.scale)
+  if (!input.scale_course.empty())
+    table += row("scale", "changes along the drive; the extrinsic is one for all of it<pre>" +
+                              escaped(input.scale_course) + "</pre>");
+  else if (calibration.scale)
     table += row("scale", fmt::format("{:.6g} &plusmn; {:.6g} times the lengths of {}, estimated{}",
                                       calibration.scale->scale, calibration.scale->stddev, scaled,
                                       calibration.scale->certified ? " and proven" : ""));
@@ -177,16 +184,16 @@ std::string report_html(const ReportInput& input) {
     out += "<p>Lengths are in the " + escaped(input.unit) +
            ", also where m or cm is written: metres only if that sensor measures metres.</p>\n";
   if (input.samples) out += section("Samples", table_of_lines(input.samples->text));
-  out += section("Transform", transform("T_a_b: pose of sensor b in sensor a, p_a = T_a_b p_b",
-                                        calibration.T_a_b, input.unit) +
-                                  transform("T_b_a: its inverse", calibration.T_b_a, input.unit));
+  out += section("Transform",
+                 transform(frames_of_answer(input.eye_to_hand).title, calibration.T_a_b, input.unit) +
+                     transform("T_b_a: its inverse", calibration.T_b_a, input.unit));
   if (input.truth) {
     const ExtrinsicError error =
         extrinsic_error(to_dual_quaternion(*input.truth), to_dual_quaternion(calibration.T_a_b));
     out += fmt::format("<p>Against the given truth: {:.3f} deg, {:.2f} cm.</p>\n", error.rotation * degrees,
                        error.translation * 100);
   }
-  out += section("Uncertainty", uncertainty(calibration));
+  out += section("Uncertainty", uncertainty(calibration, frames_of_answer(input.eye_to_hand).frame));
   out += section("Optimality",
                  fmt::format("<p>{}. Cost {:.6g}, lower bound {:.6g}, gap {:.3g}. {}</p>\n",
                              optimality(certificate), certificate.cost, certificate.lower_bound,

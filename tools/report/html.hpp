@@ -29,6 +29,8 @@ struct ReportInput {
   std::string method;
   std::string verdict;                ///< headline: the word of the verdict, a colon, the reason
   std::vector<std::string> warnings;  ///< about what was read
+  bool eye_to_hand = false;           ///< of samples: the camera stands beside the arm
+  std::string scale_course;           ///< how the scale changes along the drive; empty: it does not
   std::string unit = "m";             ///< of lengths: "m", or "unit of b"
   std::string command;                ///< the command line
   std::optional<Pose> truth;

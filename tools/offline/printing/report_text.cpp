@@ -87,20 +87,6 @@ std::string pairing_text(const SolveResult& result) {
   return text;
 }
 
-std::string clocks_text(const Calibration& calibration) {
-  std::string text;
-  if (calibration.time_offset)
-    text += fmt::format("time offset   {:.4f} +- {:.4f} s added to b (correlation {:.2f})\n",
-                        calibration.time_offset->seconds, calibration.time_offset->stddev,
-                        calibration.time_offset->correlation);
-  if (calibration.time_offset && calibration.time_offset->drifts)
-    text += fmt::format("clock drift   {:.1f} +- {:.1f} us/s of b, corrected\n",
-                        1e6 * calibration.time_offset->rate, 1e6 * calibration.time_offset->rate_stddev);
-  if (!calibration.time_offset && calibration.time_offset_applied != 0)
-    text += fmt::format("time offset   {:.4f} s added to b\n", calibration.time_offset_applied);
-  return text;
-}
-
 std::string certificate_text(const SolveResult& result) {
   const Certificate& certificate = result.calibration.certificate;
   std::string text = fmt::format(
@@ -113,8 +99,8 @@ std::string certificate_text(const SolveResult& result) {
   return text;
 }
 
-std::string uncertainty_text(const Calibration& calibration) {
-  std::string text = "uncertainty   in the frame of a, one standard deviation\n";
+std::string uncertainty_text(const Calibration& calibration, const char* frame) {
+  std::string text = fmt::format("uncertainty   in the frame of {}, one standard deviation\n", frame);
   const std::array<Backing, 6> backing = backing_of(calibration);
   for (std::size_t i = 0; i < 6; ++i) {
     const double stddev = calibration.observability.stddev[i];
@@ -136,6 +122,25 @@ std::string uncertainty_text(const Calibration& calibration) {
 
 }  // namespace
 
+AnswerFrames frames_of_answer(bool eye_to_hand) {
+  if (eye_to_hand) return {"T_a_b, pose of the camera in the base (p_base = T_a_b p_camera)", "the base"};
+  return {"T_a_b, pose of sensor b in sensor a (p_a = T_a_b p_b)", "a"};
+}
+
+std::string clocks_text(const Calibration& calibration) {
+  std::string text;
+  if (calibration.time_offset)
+    text += fmt::format("time offset   {:.4f} +- {:.4f} s added to b (correlation {:.2f})\n",
+                        calibration.time_offset->seconds, calibration.time_offset->stddev,
+                        calibration.time_offset->correlation);
+  if (calibration.time_offset && calibration.time_offset->drifts)
+    text += fmt::format("clock drift   {:.1f} +- {:.1f} us/s of b, corrected\n",
+                        1e6 * calibration.time_offset->rate, 1e6 * calibration.time_offset->rate_stddev);
+  if (!calibration.time_offset && calibration.time_offset_applied != 0)
+    text += fmt::format("time offset   {:.4f} s added to b\n", calibration.time_offset_applied);
+  return text;
+}
+
 std::string report_text(const SolveResult& result, const std::optional<Pose>& truth) {
   const Calibration& calibration = result.calibration;
   std::string text = trust_text(calibration) + unit_text(result);
@@ -143,7 +148,7 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
   text += fmt::format("optimality    {} (method {}, {:.2f} us)\n\n",
                       optimality_text(calibration.certificate.optimality), result.method, result.solve_us);
   const std::string unit = unit_of_lengths(result);
-  text += pose_text("T_a_b, pose of sensor b in sensor a (p_a = T_a_b p_b)", calibration.T_a_b, unit);
+  text += pose_text(frames_of_answer(result.eye_to_hand).title, calibration.T_a_b, unit);
   text += pose_text("T_b_a, its inverse", with_positive_scalar(calibration.T_b_a), unit);
   text += "\nmotions       " + motions_in_words(calibration) + "\n";
   text += outliers_text(calibration);
@@ -151,7 +156,7 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
   text += scale_text(result);
   text += clocks_text(calibration);
   text += certificate_text(result);
-  text += uncertainty_text(calibration);
+  text += uncertainty_text(calibration, frames_of_answer(result.eye_to_hand).frame);
   if (truth) {
     const ExtrinsicError error =
         extrinsic_error(to_dual_quaternion(*truth), to_dual_quaternion(calibration.T_a_b));

@@ -25,18 +25,8 @@ nlohmann::ordered_json segments_json(const SolveResult& result) {
 }
 
 std::string segments_text(const SolveResult& result) {
-  std::string text;
-  if (!result.course || !result.a) return text;
-  for (const ScaleSegment& segment : result.course->segments) {
-    const double begin = to_seconds(segment.begin_us) - result.a->first;
-    const double end = to_seconds(segment.end_us) - result.a->first;
-    text += segment.begin_scale == segment.end_scale
-                ? fmt::format("  from {:.1f} to {:.1f} s   {:.6g} +- {:.2g}\n", begin, end,
-                              segment.begin_scale, segment.stddev)
-                : fmt::format("  from {:.1f} to {:.1f} s   drifts from {:.6g} to {:.6g} (+- {:.2g})\n", begin,
-                              end, segment.begin_scale, segment.end_scale, segment.stddev);
-  }
-  return "scale         changes along the drive; the extrinsic is one for all of it\n" + text;
+  return "scale         changes along the drive; the extrinsic is one for all of it\n" +
+         scale_course_text(result);
 }
 
 std::string value_text(const SolveResult& result) {
@@ -61,6 +51,21 @@ std::string value_text(const SolveResult& result) {
 }
 
 }  // namespace
+
+std::string scale_course_text(const SolveResult& result) {
+  std::string text;
+  if (!result.course || !result.a) return text;
+  for (const ScaleSegment& segment : result.course->segments) {
+    const double begin = to_seconds(segment.begin_us) - result.a->first;
+    const double end = to_seconds(segment.end_us) - result.a->first;
+    text += segment.begin_scale == segment.end_scale
+                ? fmt::format("  from {:.1f} to {:.1f} s   {:.6g} +- {:.2g}\n", begin, end,
+                              segment.begin_scale, segment.stddev)
+                : fmt::format("  from {:.1f} to {:.1f} s   drifts from {:.6g} to {:.6g} (+- {:.2g})\n", begin,
+                              end, segment.begin_scale, segment.end_scale, segment.stddev);
+  }
+  return text;
+}
 
 nlohmann::ordered_json scale_json(const SolveResult& result) {
   const ScaleSolution& scale = *result.calibration.scale;

@@ -19,6 +19,7 @@ struct NamedScale {
   double stddev = 0;       ///< infinite: unknown
   bool certified = false;  ///< no other scale fits better, proven
   bool metres = true;      ///< false: whether the other sensor measures metres is not known
+  bool changes = false;    ///< along the drive: the value is its mean
 };
 
 /// What the number of a direction rests on.

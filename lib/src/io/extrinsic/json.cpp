@@ -59,7 +59,8 @@ std::string json_text(const ExtrinsicWords& words) {
             "\", \"value\": " + exact(scale.value) +
             ", \"stddev\": " + (std::isfinite(scale.stddev) ? exact(scale.stddev) : "null") +
             ", \"certified\": " + (scale.certified ? "true" : "false") +
-            ", \"metres\": " + (scale.metres ? "true" : "false") + "},\n";
+            ", \"metres\": " + (scale.metres ? "true" : "false") +
+            (scale.changes ? ", \"changes\": true" : "") + "},\n";
   }
   return text + "  \"pairs\": " + std::to_string(words.extrinsic.pairs) + "\n}\n";
 }

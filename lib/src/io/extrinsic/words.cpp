@@ -77,6 +77,7 @@ std::string verdict_in_words(const NamedExtrinsic& named, bool mixed) {
   if (named.scale)
     add_part(text, "lengths of " + detail::frame_name(named.scale->sensor) + " multiplied by " +
                        detail::exact(named.scale->value) +
+                       (named.scale->changes ? ", the mean of a scale that changes along the drive" : "") +
                        (named.scale->certified ? "" : ", which is not certified") +
                        (std::isfinite(named.scale->stddev) ? "" : ", which is NOT OBSERVABLE"));
   if (named.scale && !named.scale->metres) {

@@ -39,6 +39,7 @@ std::string yaml_text(const ExtrinsicWords& words) {
     text += "  sensor: " + yaml_word(frame_name(scale.sensor)) + "\n  value: " + exact(scale.value) + "\n";
     text += "  stddev: " + (std::isfinite(scale.stddev) ? exact(scale.stddev) : std::string(".inf")) + "\n";
     text += std::string("  certified: ") + (scale.certified ? "true" : "false") + "\n";
+    if (scale.changes) text += "  changes: true  # along the drive: the value is the mean\n";
   }
   return text + "pairs: " + std::to_string(words.extrinsic.pairs) + "\n";
 }
