@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "egocal/in_words.hpp"
+#include "egocal/io/checked_pose.hpp"
 #include "egocal/io/recording.hpp"
 #include "egocal/io/trajectory_file.hpp"
 #include "egocal/limits.hpp"
@@ -52,16 +53,6 @@ void require_fine_times(const py::handle& object, double largest, const char* na
                      std::to_string(8 * array.itemsize()) + ": give them as float64");
 }
 
-/// Why this is no pose; empty: it is one. The limits are those of poses in files.
-std::string fault_of(const Eigen::Vector3d& position, const Eigen::Vector4d& quaternion) {
-  if (!position.allFinite()) return "the position is not finite";
-  if (!plausible_distance(position.cwiseAbs().maxCoeff())) return "position: expected less than 1e9 m";
-  if (!quaternion.allFinite()) return "the quaternion is not finite";
-  if (!plausible_norm(quaternion.norm()))
-    return "quaternion: expected length 1, got " + text("%.4g", quaternion.norm());
-  return "";
-}
-
 /// The trajectory sorted by time, the first of equal times kept.
 Trajectory in_order(Trajectory trajectory, const char* name, std::vector<std::string>& notes) {
   TrajectoryReading reading;
@@ -81,12 +72,10 @@ Trajectory from_rows(const Array& rows, const char* name, std::vector<std::strin
   Trajectory trajectory;
   const auto at = rows.unchecked<2>();
   for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
-    const Eigen::Quaterniond rotation(at(i, 7), at(i, 4), at(i, 5), at(i, 6));
-    const Eigen::Vector3d translation(at(i, 1), at(i, 2), at(i, 3));
-    if (const std::string fault = fault_of(translation, rotation.coeffs()); !fault.empty())
-      refuse(name, "row " + std::to_string(i) + ": not a pose: " + fault);
-    const Pose pose{rotation.normalized(), translation};
-    trajectory.push_back({to_microseconds(at(i, 0), name, i), to_dual_quaternion(pose)});
+    const detail::CheckedPose checked =
+        detail::checked_pose({at(i, 1), at(i, 2), at(i, 3)}, {at(i, 7), at(i, 4), at(i, 5), at(i, 6)});
+    if (!checked.reason.empty()) refuse(name, "row " + std::to_string(i) + ": not a pose: " + checked.reason);
+    trajectory.push_back({to_microseconds(at(i, 0), name, i), checked.pose});
   }
   return in_order(std::move(trajectory), name, notes);
 }

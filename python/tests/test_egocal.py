@@ -95,9 +95,11 @@ def test_what_is_no_trajectory_is_refused_with_its_reason(drive):
     masked = np.ma.masked_array(rows, mask=False)
     masked[5, 1] = np.ma.masked
     for bad, why in [
-        (changed(rows, 5, 2, np.inf), "a: row 5: not a pose: the position is not finite"),
+        (changed(rows, 5, 2, np.inf), "a: row 5: not a pose: position: expected finite numbers"),
         (changed(rows, 5, 1, 1e300), "a: row 5: not a pose: position: expected less than 1e9 m"),
-        (changed(rows, 5, slice(4, 8), 0), "a: row 5: not a pose: quaternion: expected length 1, got 0"),
+        (changed(rows, 5, 6, np.nan), "a: row 5: not a pose: quaternion: expected finite numbers"),
+        (changed(rows, 5, 7, 2.0), "a: row 5: not a pose: quaternion: expected length 1, got [12]"),
+        (changed(rows, 5, slice(4, 8), 0), "a: row 5: not a pose: quaternion: is zero"),
         (changed(rows, 5, 0, 1.7e18), "a: row 5: expected a time in seconds, got 1.7e.18"),
         (rows.astype(np.float32), "a: its times are .* s apart in float32: give them as float64"),
         (masked, "a: has masked entries"),

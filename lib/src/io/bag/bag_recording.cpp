@@ -8,8 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "egocal/io/checked_pose.hpp"
 #include "egocal/limits.hpp"
-#include "io/checked_pose.hpp"
 
 namespace egocal::detail {
 

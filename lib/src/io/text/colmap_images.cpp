@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "egocal/error.hpp"
-#include "io/checked_pose.hpp"
+#include "egocal/io/checked_pose.hpp"
 #include "io/text.hpp"
 #include "io/text/line_reader.hpp"
 

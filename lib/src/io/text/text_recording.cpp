@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "egocal/error.hpp"
+#include "egocal/io/checked_pose.hpp"
 #include "egocal/io/misplaced_times.hpp"
 #include "egocal/limits.hpp"
 #include "egocal/microseconds.hpp"
-#include "io/checked_pose.hpp"
 #include "io/text/geodesy.hpp"
 #include "io/text/rotation_rows.hpp"
 #include "io/text/text_rows.hpp"

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "egocal/error.hpp"
+#include "egocal/io/checked_pose.hpp"
 #include "egocal/io/recording.hpp"
 #include "egocal/io/twist_integrator.hpp"
 #include "io/bytes/byte_source.hpp"
-#include "io/checked_pose.hpp"
 #include "io/text/angle_unit.hpp"
 #include "io/text/layout.hpp"
 

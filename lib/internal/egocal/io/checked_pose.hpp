@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
+// Checks one pose, as a file or an array has it, against the limits of egocal/limits.hpp.
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 
 #include "egocal/geometry/dual_quaternion.hpp"
