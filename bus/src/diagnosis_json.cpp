@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "egocal/bus/pose_json.hpp"
+
 namespace egocal::bus {
 
 namespace {
@@ -20,11 +22,7 @@ nlohmann::ordered_json finding_json(const Finding& finding) {
   json["improvement"] = finding.improvement;
   if (finding.value) json["value"] = *finding.value;
   if (finding.time) json["time"] = *finding.time;
-  if (finding.T_a_b) {
-    const Pose& T = *finding.T_a_b;
-    json["translation"] = {T.translation.x(), T.translation.y(), T.translation.z()};
-    json["rotation_wxyz"] = {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()};
-  }
+  if (finding.T_a_b) put_pose(json, *finding.T_a_b);
   return json;
 }
 

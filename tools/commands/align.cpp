@@ -9,6 +9,7 @@
 #include "commands/commands.hpp"
 #include "commands/request_options.hpp"
 #include "degrees.hpp"
+#include "egocal/bus/pose_json.hpp"
 #include "egocal/calibrate.hpp"
 #include "egocal/evaluation/alignment.hpp"
 #include "egocal/in_words.hpp"
@@ -29,11 +30,6 @@ struct AlignOptions {
   bool json = false;
 };
 
-nlohmann::ordered_json pose_json(const Pose& T) {
-  return {{"translation", {T.translation.x(), T.translation.y(), T.translation.z()}},
-          {"rotation_wxyz", {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()}}};
-}
-
 /// unit: of lengths, "m" or "unit of b".
 std::string pose_text(const Pose& T, const std::string& unit) {
   return fmt::format("{:.6f} {:.6f} {:.6f} [{}], quaternion w x y z {:.9f} {:.9f} {:.9f} {:.9f}",
@@ -45,8 +41,8 @@ nlohmann::ordered_json as_json(const SolveRequest& request, const SolveResult& r
                                const Alignment& alignment, const std::string& command_line) {
   const Calibration& calibration = result.calibration;
   nlohmann::ordered_json json = trust_json(calibration);
-  json["T_a_b"] = pose_json(calibration.T_a_b);
-  json["T_world_a_world_b"] = pose_json(alignment.T_world_a_world_b);
+  json["T_a_b"] = bus::pose_json(calibration.T_a_b);
+  json["T_world_a_world_b"] = bus::pose_json(alignment.T_world_a_world_b);
   json["certified"] = calibration.certificate.optimality == Optimality::certified;
   json["poses"] = alignment.b_as_a.size();
   json["compared"] = alignment.compared;

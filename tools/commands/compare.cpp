@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "commands/source_options.hpp"
+#include "egocal/bus/pose_json.hpp"
 #include "experiments/comparison.hpp"
 #include "experiments/table_text.hpp"
 #include "offline/printing/provenance.hpp"
@@ -24,12 +25,10 @@ struct CompareOptions {
 };
 
 nlohmann::ordered_json comparison_json(const ComparisonRow& row) {
-  const Pose T = to_pose(row.T_a_b);
   nlohmann::ordered_json json;
   json["method"] = row.method;
   json["mode"] = row.mode == Mode::planar ? "planar" : "spatial";
-  json["translation"] = {T.translation.x(), T.translation.y(), T.translation.z()};
-  json["rotation_wxyz"] = {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()};
+  bus::put_pose(json, to_pose(row.T_a_b));
   if (row.error) {
     json["error_translation_m"] = row.error->translation;
     json["error_rotation_deg"] = row.error->rotation * 180 / std::numbers::pi;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "degrees.hpp"
+#include "egocal/bus/pose_json.hpp"
 #include "egocal/directions.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "offline/common/backing_of.hpp"
@@ -58,12 +59,8 @@ nlohmann::ordered_json report_json(const SolveResult& result, const std::optiona
   const Pose T = calibration.T_a_b;
   const Certificate& certificate = calibration.certificate;
   nlohmann::ordered_json json = trust_json(calibration);
-  json["translation"] = {T.translation.x(), T.translation.y(), T.translation.z()};
-  json["rotation_wxyz"] = {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()};
-  const Pose T_b_a = with_positive_scalar(calibration.T_b_a);
-  json["T_b_a"] = {
-      {"translation", {T_b_a.translation.x(), T_b_a.translation.y(), T_b_a.translation.z()}},
-      {"rotation_wxyz", {T_b_a.rotation.w(), T_b_a.rotation.x(), T_b_a.rotation.y(), T_b_a.rotation.z()}}};
+  bus::put_pose(json, T);
+  json["T_b_a"] = bus::pose_json(with_positive_scalar(calibration.T_b_a));
   json["matrix"] = matrix_json(T);
   json["pairs"] = sum_blocks(calibration.problem.blocks).count;
   json["cost"] = certificate.cost;

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "degrees.hpp"
+#include "egocal/bus/pose_json.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "offline/common/backing_of.hpp"
 #include "offline/extrinsics/named_extrinsic.hpp"
@@ -23,11 +24,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* rotations[] = {"roll", "pitch", "yaw"};
-
-void add_pose(Json& json, const Pose& T) {
-  json["translation"] = {T.translation.x(), T.translation.y(), T.translation.z()};
-  json["rotation_wxyz"] = {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()};
-}
 
 double length(const std::array<double, 6>& x, std::size_t from) {
   return Eigen::Map<const Eigen::Vector3d>(x.data() + from).norm();
@@ -58,8 +54,8 @@ Json finding_json(const RigReport& report, const RigFinding& finding) {
   json["change"] = move.change;
   json["change_stddev"] = move.stddev;
   json["false_alarm"] = move.false_alarm;
-  add_pose(json["before"], to_pose(move.before));
-  add_pose(json["after"], to_pose(move.after));
+  bus::put_pose(json["before"], to_pose(move.before));
+  bus::put_pose(json["after"], to_pose(move.after));
   return json;
 }
 
@@ -70,7 +66,7 @@ Json extrinsic_json(const RigReport& report, std::size_t i) {
   Json json;
   json["a"] = report.names[pair.a];
   json["b"] = report.names[pair.b];
-  add_pose(json, calibration.T_a_b);
+  bus::put_pose(json, calibration.T_a_b);
   const Json trust = trust_json(calibration);
   for (const char* key : {"verdict", "reason", "fit", "findings", "goal"})
     if (trust.contains(key)) json[key] = trust[key];
@@ -234,7 +230,7 @@ Json tree_json(const RigReport& report) {
     Json edge;
     edge["parent"] = extrinsic.parent;
     edge["child"] = extrinsic.child;
-    add_pose(edge, extrinsic.T_parent_child);
+    bus::put_pose(edge, extrinsic.T_parent_child);
     edge["verdict"] = extrinsic.verdict;
     edge["reason"] = extrinsic.reason;
     edge["certified"] = extrinsic.certified;

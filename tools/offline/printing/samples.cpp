@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "degrees.hpp"
+#include "egocal/bus/pose_json.hpp"
 
 namespace egocal::tools {
 
@@ -27,15 +28,13 @@ const char* target_name(const SolveResult& result) {
 
 nlohmann::ordered_json samples_json(const SolveResult& result) {
   const SampleCalibration& samples = *result.samples;
-  const Pose& Y = samples.T_world_a_world_b;
   nlohmann::ordered_json json;
   json["count"] = samples.residuals.size();
   json["wrong"] = wrong_rows(result);
   json["setup"] = result.eye_to_hand ? "eye_to_hand" : "eye_in_hand";
   json["matched_by"] = result.matched.by_stamp ? "stamp" : "row";
   json["without_partner"] = result.matched.without_partner;
-  json["target"] = {{"translation", {Y.translation.x(), Y.translation.y(), Y.translation.z()}},
-                    {"rotation_wxyz", {Y.rotation.w(), Y.rotation.x(), Y.rotation.y(), Y.rotation.z()}}};
+  json["target"] = bus::pose_json(samples.T_world_a_world_b);
   json["spread_mm"] = {{"median", 1e3 * samples.spread_median},
                        {"rms", 1e3 * samples.spread_rms},
                        {"largest", 1e3 * samples.spread_largest}};
@@ -65,7 +64,6 @@ std::string samples_text(const SolveResult& result) {
                                   wrong.size() == 1 ? "row" : "rows", fmt::join(wrong, ", ")),
       1e3 * samples.spread_median, 1e3 * samples.spread_rms, 1e3 * samples.spread_largest,
       samples.noise_rotation * degrees, 1e3 * samples.noise_translation);
-  const Pose& Y = samples.T_world_a_world_b;
   text += fmt::format("{:<14}x y z {:.6f} {:.6f} {:.6f} m, q w x y z {:.9f} {:.9f} {:.9f} {:.9f} ({})\n",
                       "target", Y.translation.x(), Y.translation.y(), Y.translation.z(), Y.rotation.w(),
                       Y.rotation.x(), Y.rotation.y(), Y.rotation.z(), target_name(result));
