@@ -3,15 +3,13 @@
 #include "egocal/bus/diagnosis_json.hpp"
 
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "egocal/bus/pose_json.hpp"
+#include "egocal/degrees.hpp"
 
 namespace egocal::bus {
 
 namespace {
-
-constexpr double degrees = 180 / std::numbers::pi;
 
 nlohmann::ordered_json finding_json(const Finding& finding) {
   nlohmann::ordered_json json;
@@ -30,8 +28,8 @@ nlohmann::ordered_json finding_json(const Finding& finding) {
 
 nlohmann::ordered_json fit_json(const Fit& fit) {
   nlohmann::ordered_json json;
-  json["rotation_deg_median"] = fit.rotation_median * degrees;
-  json["rotation_deg_95"] = fit.rotation_95 * degrees;
+  json["rotation_deg_median"] = fit.rotation_median * degrees_per_radian;
+  json["rotation_deg_95"] = fit.rotation_95 * degrees_per_radian;
   json["translation_m_median"] = fit.translation_median;
   json["translation_m_95"] = fit.translation_95;
   json["translation_relative_median"] = fit.translation_relative_median;
@@ -42,7 +40,7 @@ nlohmann::ordered_json fit_json(const Fit& fit) {
   for (const FitTenth& tenth : fit.tenths)
     json["tenths"].push_back({{"begin_s", tenth.begin},
                               {"end_s", tenth.end},
-                              {"rotation_deg_median", tenth.rotation_median * degrees},
+                              {"rotation_deg_median", tenth.rotation_median * degrees_per_radian},
                               {"translation_m_median", tenth.translation_median},
                               {"translation_relative_median", tenth.translation_relative}});
   return json;

@@ -5,9 +5,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <string>
 
+#include "egocal/degrees.hpp"
 #include "egocal/directions.hpp"
 #include "egocal/monitor/canvas.hpp"
 #include "egocal/monitor/model.hpp"
@@ -17,7 +17,6 @@ namespace egocal::monitor {
 
 // An answer in words and numbers for people: degrees and centimetres.
 
-inline constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 inline constexpr double centimetres_per_metre = 100.0;  // unit
 
 /// What is kept of a text from a sender: its first Model::max_text bytes.

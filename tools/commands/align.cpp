@@ -8,9 +8,9 @@
 
 #include "commands/commands.hpp"
 #include "commands/request_options.hpp"
-#include "degrees.hpp"
 #include "egocal/bus/pose_json.hpp"
 #include "egocal/calibrate.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/evaluation/alignment.hpp"
 #include "egocal/in_words.hpp"
 #include "egocal/pairing/time_offset.hpp"
@@ -73,7 +73,7 @@ std::string as_text(const SolveResult& result, const Alignment& alignment) {
   text += clocks_text(calibration);
   text += fmt::format("agreement     {} compared, RMS {:.4f} {}, {:.4f} deg\n",
                       counted(alignment.compared, "pose"), alignment.rms_translation, "[" + unit + "]",
-                      alignment.rms_rotation * degrees);
+                      alignment.rms_rotation * degrees_per_radian);
   return text;
 }
 

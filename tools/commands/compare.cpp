@@ -6,10 +6,10 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "commands/source_options.hpp"
 #include "egocal/bus/pose_json.hpp"
+#include "egocal/degrees.hpp"
 #include "experiments/comparison.hpp"
 #include "experiments/table_text.hpp"
 #include "offline/printing/provenance.hpp"
@@ -31,7 +31,7 @@ nlohmann::ordered_json comparison_json(const ComparisonRow& row) {
   bus::put_pose(json, to_pose(row.T_a_b));
   if (row.error) {
     json["error_translation_m"] = row.error->translation;
-    json["error_rotation_deg"] = row.error->rotation * 180 / std::numbers::pi;
+    json["error_rotation_deg"] = row.error->rotation * degrees_per_radian;
   }
   json["milliseconds"] = row.milliseconds;
   json["verdict"] = row.verdict;

@@ -8,8 +8,8 @@
 
 #include "commands/commands.hpp"
 #include "commands/reading_options.hpp"
-#include "degrees.hpp"
 #include "egocal/bus/convert.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/error.hpp"
 #include "egocal/in_words.hpp"
 #include "egocal/io/stream_summary.hpp"
@@ -160,7 +160,8 @@ void print_row(const Row& row) {
              to_seconds(summary.last_us), to_seconds(summary.last_us - summary.first_us));
   fmt::print("  path length     {:.1f} m\n", summary.path_length);
   fmt::print("  turning         {:.0f} {:.0f} {:.0f} deg about x y z of the sensor\n",
-             summary.turning[0] * degrees, summary.turning[1] * degrees, summary.turning[2] * degrees);
+             summary.turning[0] * degrees_per_radian, summary.turning[1] * degrees_per_radian,
+             summary.turning[2] * degrees_per_radian);
   if (summary.gaps > 0)
     fmt::print("  gaps            {}, the longest {:.3f} s\n", summary.gaps, summary.longest_gap);
   if (summary.jumps > 0) fmt::print("  jumps           {} (above 70 m/s or 15 rad/s)\n", summary.jumps);

@@ -5,15 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "arguments.hpp"
+#include "egocal/degrees.hpp"
 
 namespace egocal::tools {
 
 namespace {
-
-constexpr double radians = std::numbers::pi / 180;
 
 /// Splits at every `separator`.
 std::vector<std::string> parts(const std::string& text, char separator) {
@@ -51,9 +49,9 @@ Pose change(const char* option, const std::string& text) {
   for (std::size_t i = 0; i < 6; ++i) value[i] = number_in(option, numbers[i], i < 3 ? metres : degrees);
   using Eigen::AngleAxisd;
   using Eigen::Vector3d;
-  const Eigen::Quaterniond rotation = AngleAxisd(radians * value[5], Vector3d::UnitZ()) *
-                                      AngleAxisd(radians * value[4], Vector3d::UnitY()) *
-                                      AngleAxisd(radians * value[3], Vector3d::UnitX());
+  const Eigen::Quaterniond rotation = AngleAxisd(radians_per_degree * value[5], Vector3d::UnitZ()) *
+                                      AngleAxisd(radians_per_degree * value[4], Vector3d::UnitY()) *
+                                      AngleAxisd(radians_per_degree * value[3], Vector3d::UnitX());
   return {rotation, {value[0], value[1], value[2]}};
 }
 

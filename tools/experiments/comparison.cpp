@@ -9,9 +9,9 @@
 #include <functional>
 #include <utility>
 
-#include "degrees.hpp"
 #include "egocal/baselines/baselines.hpp"
 #include "egocal/certificate/certificate.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/solvers/global.hpp"
 #include "egocal/solvers/sdp.hpp"
 #include "egocal/solvers/slsqp.hpp"
@@ -104,7 +104,8 @@ std::string table(const std::vector<ComparisonRow>& rows) {
                                  "e_r [deg]", "time [ms]", "verdict");
   for (const ComparisonRow& row : rows) {
     const std::string translation = row.error ? fmt::format("{:.2f}", 100 * row.error->translation) : "-";
-    const std::string rotation = row.error ? fmt::format("{:.3f}", degrees * row.error->rotation) : "-";
+    const std::string rotation =
+        row.error ? fmt::format("{:.3f}", degrees_per_radian * row.error->rotation) : "-";
     text += fmt::format("{:<22} {:<7} {:>12} {:>10} {:>10.4f}  {}\n", row.method,
                         row.mode == Mode::planar ? "planar" : "3-D", translation, rotation, row.milliseconds,
                         row.verdict);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "egocal/degrees.hpp"
 #include "egocal/solvers/global.hpp"
 
 namespace egocal::tools {
@@ -40,7 +41,7 @@ std::vector<GlobalityPoint> globality_experiment(const DataSet& data, const Glob
       std::vector<double> gaps, excesses;
       for (int i = 0; i < options.directions; ++i) {
         const Eigen::Vector3d along = direction(i, options.directions, options.seed);
-        const double radians = amount * std::numbers::pi / 180;
+        const double radians = amount * radians_per_degree;
         const Pose by = rotation ? Pose{rotation_exp(radians * along), Eigen::Vector3d::Zero()}
                                  : Pose{Eigen::Quaterniond::Identity(), amount * along};
         const DualQuaternion q = optimum.q * to_dual_quaternion(by);

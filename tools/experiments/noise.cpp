@@ -10,8 +10,8 @@
 #include <map>
 #include <numbers>
 
-#include "degrees.hpp"
 #include "egocal/certificate/certificate.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/estimation/attenuation.hpp"
 #include "egocal/solvers/global.hpp"
 #include "experiments/deviation.hpp"
@@ -205,9 +205,10 @@ std::string csv(const std::vector<NoisePoint>& points) {
                        factor * errors.upper_quartile, factor * errors.worst);
   };
   for (const NoisePoint& p : points)
-    text += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{},{}\n", p.level, p.pairs,
-                        numbers(p.translation, 1), numbers(p.rotation, degrees), p.translation_spread.median,
-                        degrees * p.rotation_spread.median, p.shortened, p.certified, p.runs);
+    text +=
+        fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{},{}\n", p.level, p.pairs, numbers(p.translation, 1),
+                    numbers(p.rotation, degrees_per_radian), p.translation_spread.median,
+                    degrees_per_radian * p.rotation_spread.median, p.shortened, p.certified, p.runs);
   return text;
 }
 
@@ -215,11 +216,11 @@ std::vector<Panel> panels(const std::vector<NoisePoint>& points) {
   return {{"translation", error_plot(points, "Translation error by noise level", "median error [m]",
                                      &NoisePoint::translation, 1)},
           {"rotation", error_plot(points, "Rotation error by noise level", "median error [deg]",
-                                  &NoisePoint::rotation, degrees)},
+                                  &NoisePoint::rotation, degrees_per_radian)},
           {"translation-spread", error_plot(points, "Translation error without its bias",
                                             "median deviation [m]", &NoisePoint::translation_spread, 1)},
           {"rotation-spread", error_plot(points, "Rotation error without its bias", "median deviation [deg]",
-                                         &NoisePoint::rotation_spread, degrees)}};
+                                         &NoisePoint::rotation_spread, degrees_per_radian)}};
 }
 
 }  // namespace egocal::tools

@@ -8,8 +8,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "degrees.hpp"
 #include "egocal/certificate/certificate.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/problem/blocks.hpp"
 #include "egocal/problem/problem.hpp"
 
@@ -87,7 +87,8 @@ std::string csv(const std::vector<OnlinePoint>& points) {
       "used,fast_us,global_us,verify_us\n";
   for (const OnlinePoint& p : points) {
     const std::string error =
-        p.error ? fmt::format("{:.9g},{:.9g}", p.error->translation, degrees * p.error->rotation) : ",";
+        p.error ? fmt::format("{:.9g},{:.9g}", p.error->translation, degrees_per_radian * p.error->rotation)
+                : ",";
     const std::string before = p.scaled_gap_before ? fmt::format("{:.6g}", *p.scaled_gap_before) : "";
     text += fmt::format("{},{:.6f},{},{:.6g},{},{:d},{:d},{:d},{:.2f},{:.2f},{:.2f}\n", p.frame, p.time,
                         error, p.scaled_gap, before, p.certified, p.fast_verified, p.global_used, p.fast_us,
@@ -128,8 +129,9 @@ std::vector<Panel> panels(const std::vector<OnlinePoint>& points) {
   if (!points.empty() && points.front().error) {
     Plot rotation = plot_of("Rotation error", "rotation error [deg]"),
          translation = plot_of("Translation error", "translation error [m]");
-    rotation.series.push_back(series_of("", Colour::blue, Series::Style::line,
-                                        [&](const OnlinePoint& p) { return degrees * p.error->rotation; }));
+    rotation.series.push_back(series_of("", Colour::blue, Series::Style::line, [&](const OnlinePoint& p) {
+      return degrees_per_radian * p.error->rotation;
+    }));
     translation.series.push_back(series_of("", Colour::blue, Series::Style::line,
                                            [](const OnlinePoint& p) { return p.error->translation; }));
     result.push_back({"rotation", rotation});

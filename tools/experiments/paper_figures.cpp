@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "egocal/degrees.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "experiments/globality.hpp"
 #include "experiments/noise_slopes.hpp"
@@ -221,7 +221,7 @@ std::string figure_6_part(const PaperOptions& options, const PaperData& data, co
         mode == Mode::planar ? "Planar" : "Three-dimensional", last_global_frame(points), not_verified,
         points.size(), OnlineOptions{}.t_no_fail, median(fast), median(verify),
         last.error ? fmt::format("; at frame {} {:.2f} cm, {:.3f} deg", last.frame,
-                                 100 * last.error->translation, last.error->rotation * 180 / std::numbers::pi)
+                                 100 * last.error->translation, last.error->rotation * degrees_per_radian)
                    : std::string());
     text += figures_html(drawn);
     const OnlinePoint& end = whole.back();
@@ -229,7 +229,7 @@ std::string figure_6_part(const PaperOptions& options, const PaperData& data, co
                 "<p>All {} frames: certified in {}{}.</p>\n", whole.size(),
                 std::count_if(whole.begin(), whole.end(), [](const OnlinePoint& p) { return p.certified; }),
                 end.error ? fmt::format("; at the end {:.2f} cm, {:.3f} deg", 100 * end.error->translation,
-                                        end.error->rotation * 180 / std::numbers::pi)
+                                        end.error->rotation * degrees_per_radian)
                           : std::string()) +
             figures_html(whole_drive);
   }

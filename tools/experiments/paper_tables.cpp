@@ -5,8 +5,8 @@
 #include <chrono>
 #include <span>
 
-#include "degrees.hpp"
 #include "egocal/calibrate.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/io/whole_file.hpp"
 #include "egocal/simulation/simulation.hpp"
 #include "experiments/comparison.hpp"
@@ -48,7 +48,7 @@ std::string our_rows(const std::vector<ComparisonRow>& rows, Mode mode) {
     text += "<tr>" +
             cells(row.method, mode == Mode::planar ? "planar" : "3-D",
                   row.error ? centimetres(row.error->translation) : "-",
-                  row.error ? fmt::format("{:.3f}", degrees * row.error->rotation) : "-",
+                  row.error ? fmt::format("{:.3f}", degrees_per_radian * row.error->rotation) : "-",
                   fmt::format("{:.4f}", row.milliseconds), row.verdict) +
             "</tr>\n";
   }

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/table_text.hpp"
-#include "degrees.hpp"
 
 #include <fmt/format.h>
+
+#include "egocal/degrees.hpp"
 
 namespace egocal::tools {
 
@@ -42,8 +43,9 @@ std::string latex_translation(const ComparisonRow& row) {
 std::string csv(const std::vector<ComparisonRow>& rows) {
   std::string text = "method,mode,error_translation_m,error_rotation_deg,milliseconds,verdict\n";
   for (const ComparisonRow& row : rows) {
-    const std::string errors =
-        row.error ? fmt::format("{:.9g},{:.9g}", row.error->translation, degrees * row.error->rotation) : ",";
+    const std::string errors = row.error ? fmt::format("{:.9g},{:.9g}", row.error->translation,
+                                                       degrees_per_radian * row.error->rotation)
+                                         : ",";
     text += fmt::format("{},{},{},{:.6g},{}\n", csv_field(row.method), mode_text(row), errors,
                         row.milliseconds, csv_field(row.verdict));
   }
@@ -57,7 +59,7 @@ std::string latex(const std::vector<ComparisonRow>& rows) {
   for (const ComparisonRow& row : rows)
     text += fmt::format("{} & {} & {} & {} & {:.4f} \\\\\n", latex_text(row.method),
                         row.mode == Mode::planar ? "planar" : "3D", latex_translation(row),
-                        row.error ? fmt::format("{:.3f}", degrees * row.error->rotation) : "--",
+                        row.error ? fmt::format("{:.3f}", degrees_per_radian * row.error->rotation) : "--",
                         row.milliseconds);
   return text + "\\hline\n\\end{tabular}\n";
 }

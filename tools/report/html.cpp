@@ -8,7 +8,7 @@
 #include <cmath>
 #include <optional>
 
-#include "degrees.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/directions.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/version.hpp"
@@ -61,7 +61,8 @@ std::string transform(const std::string& title, const Pose& given, const std::st
   T.translation = without_negative_zeros(T.translation, 6);
   const Eigen::Vector3d& t = T.translation;
   const auto& q = T.rotation;
-  const Eigen::Vector3d angles = without_negative_zeros(roll_pitch_yaw(Eigen::Quaterniond(q)) * degrees, 5);
+  const Eigen::Vector3d angles =
+      without_negative_zeros(roll_pitch_yaw(Eigen::Quaterniond(q)) * degrees_per_radian, 5);
   std::string table = "<table class='wide'>\n";
   table += row("translation x y z [" + unit + "]",
                fmt::format("<code>{:.6f} {:.6f} {:.6f}</code>", t.x(), t.y(), t.z()));
@@ -100,7 +101,8 @@ std::string uncertainty(const Calibration& calibration, const char* frame) {
       value = "<b>not observable</b>: from the nominal value";
     else if (calibration.observability.observable[i])
       value = std::isfinite(stddev)
-                  ? fmt::format("&plusmn; {:.3f} {}", stddev * (i < 3 ? 100 : degrees), i < 3 ? "cm" : "deg")
+                  ? fmt::format("&plusmn; {:.3f} {}", stddev * (i < 3 ? 100 : degrees_per_radian),
+                                i < 3 ? "cm" : "deg")
                   : "observable, too few motions for a standard deviation";
     table += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", direction_names[i], value);
   }
@@ -190,8 +192,8 @@ std::string report_html(const ReportInput& input) {
   if (input.truth) {
     const ExtrinsicError error =
         extrinsic_error(to_dual_quaternion(*input.truth), to_dual_quaternion(calibration.T_a_b));
-    out += fmt::format("<p>Against the given truth: {:.3f} deg, {:.2f} cm.</p>\n", error.rotation * degrees,
-                       error.translation * 100);
+    out += fmt::format("<p>Against the given truth: {:.3f} deg, {:.2f} cm.</p>\n",
+                       error.rotation * degrees_per_radian, error.translation * 100);
   }
   out += section("Uncertainty", uncertainty(calibration, frames_of_answer(input.eye_to_hand).frame));
   out += section("Optimality",

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "degrees.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/directions.hpp"
 #include "figures/plot.hpp"
 #include "report/series.hpp"
@@ -85,7 +85,7 @@ Plot progress_plot(const Progress& progress, const DrawnTime& time, bool rotatio
     series.name = direction_names[i + (rotation ? 3 : 0)];
     series.x = progress.time;
     for (const double stddev : progress.stddev[i + (rotation ? 3 : 0)])
-      series.y.push_back(stddev * (rotation ? degrees : 100));
+      series.y.push_back(stddev * (rotation ? degrees_per_radian : 100));
     series.colour = axis_colours[i];
     series.style = styles[i];
     plot.series.push_back(series);

@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "degrees.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/microseconds.hpp"
 
 namespace egocal::tools {
@@ -38,7 +38,7 @@ Residuals residuals_of(const std::vector<MotionPair>& pairs, const Pose& T_a_b, 
   for (const MotionPair& pair : pairs) {
     const Pose residual = inverse(to_pose(pair.a)) * (T_a_b * to_pose(pair.b) * T_b_a);
     result.time.push_back(time.seconds(pair.end_us));
-    result.rotation.push_back(rotation_log(residual.rotation).norm() * degrees);
+    result.rotation.push_back(rotation_log(residual.rotation).norm() * degrees_per_radian);
     result.translation.push_back(residual.translation.norm());
   }
   return result;
@@ -131,7 +131,7 @@ Excitation excitation_of(const Trajectory& a, const DrawnTime& time) {
     const double duration = seconds_between(a[from].time_us, a[i].time_us);
     const Eigen::Quaterniond turned =
         to_pose(a[from].pose).rotation.conjugate() * to_pose(a[i].pose).rotation;
-    const Eigen::Vector3d rate = rotation_log(turned) * degrees / duration;
+    const Eigen::Vector3d rate = rotation_log(turned) * degrees_per_radian / duration;
     add(time.seconds(a[i].time_us), rate);
     for (int k = 0; k < 3; ++k) squares[k] += rate[k] * rate[k];
     ++count;

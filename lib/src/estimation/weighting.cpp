@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <numbers>
 
+#include "egocal/degrees.hpp"
 #include "estimation/memory_weights.hpp"
 #include "estimation/noise_growth.hpp"
 #include "estimation/single_stride_rival.hpp"
@@ -109,7 +109,7 @@ std::string reason(const WeightChoice& choice, const SpreadByPoses& spread) {
                 "sum over strides, %.1f steps in the mean, weighted by the residuals%s: "
                 "spread %.3f deg, %.2f cm",
                 choice.mean_stride, choice.memory > 0 ? " and the jack-knife" : "",
-                spread.rotation * 180 / std::numbers::pi, 100 * spread.translation);
+                spread.rotation * degrees_per_radian, 100 * spread.translation);
   return text;
 }
 

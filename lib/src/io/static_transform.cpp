@@ -3,8 +3,8 @@
 #include "io/static_transform.hpp"
 
 #include <cstdio>
-#include <numbers>
 
+#include "egocal/degrees.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/printable.hpp"
 
@@ -19,7 +19,7 @@ std::string difference(const DualQuaternion& one, const DualQuaternion& other) {
   const double turn = rotation_log(change.rotation).norm(), way = change.translation.norm();
   if (turn < rounding && way < rounding) return {};
   char text[64];
-  std::snprintf(text, sizeof text, "%.3f deg and %.4f m", turn * 180 / std::numbers::pi, way);
+  std::snprintf(text, sizeof text, "%.3f deg and %.4f m", turn * degrees_per_radian, way);
   return text;
 }
 

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <utility>
 
+#include "egocal/degrees.hpp"
 #include "egocal/microseconds.hpp"
 #include "motions/motions_between.hpp"
 #include "motions/motions_to_one.hpp"
@@ -275,7 +275,7 @@ void Accumulator::choose() {
   state_.choice.balance = selected->setting.balance;
   char text[160];
   std::snprintf(text, sizeof text, "smallest jack-knife spread of %zu settings: %.3f deg, %.2f cm",
-                selected->tried, selected->spread.rotation * 180 / std::numbers::pi,
+                selected->tried, selected->spread.rotation * degrees_per_radian,
                 100 * selected->spread.translation);
   state_.choice.reason = text;
 }

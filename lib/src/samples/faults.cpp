@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/in_words.hpp"
 #include "statistics/median.hpp"
 
@@ -48,12 +48,11 @@ std::optional<Finding> turns_too_small(std::span<const PoseSample> samples, cons
   // without turns both go equally far, whatever X is
   const bool noisy_ways = median(std::move(unlike)) > options.alike * median(std::move(ways));
   if (!(turn < options.least_turn) || !noisy_turns || noisy_ways) return std::nullopt;
-  constexpr double degrees = 180 / std::numbers::pi;
   Finding finding;
   finding.code = "too_little_motion";
   finding.certain = true;
   finding.message = format("The samples turn by %.2g deg from one to another, which is no more than noise.",
-                           turn * degrees);
+                           turn * degrees_per_radian);
   finding.remedy =
       "Turn the hand, too: 10 poses and more, with turns of 20 degrees and more in different directions.";
   return finding;

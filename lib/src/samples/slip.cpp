@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <string>
 
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "statistics/distributions.hpp"
 #include "uncertainty/frame_a.hpp"
 
@@ -191,7 +191,6 @@ std::optional<Finding> slip_among(const SampleSet& set, const std::vector<Placed
 }  // namespace
 
 Finding worded_slip(const FoundSlip& slip, bool metres, bool certain) {
-  constexpr double degrees = 180 / std::numbers::pi;
   Finding finding;
   finding.code = "mount_moved";
   finding.certain = certain;
@@ -203,7 +202,7 @@ Finding worded_slip(const FoundSlip& slip, bool metres, bool certain) {
       "residuals "
       "are %.3g times smaller with two places.",
       slip.row + 1, slip.of_target ? "the target" : "the camera", length_in_words(slip.shift, metres).c_str(),
-      slip.turn * degrees, slip.gain);
+      slip.turn * degrees_per_radian, slip.gain);
   finding.remedy = format("Fasten camera and target. Calibrate the samples before and after %zu separately.",
                           slip.row + 1);
   return finding;

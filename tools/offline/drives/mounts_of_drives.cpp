@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "degrees.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/error.hpp"
 #include "offline/drives/fault_of_drive.hpp"
 
@@ -66,7 +66,7 @@ bool shows(const Move& move, const MountsOfDrivesOptions& mounts) {
 
 std::string size_of(const ShownChange& shown) {
   std::string text;
-  if (shown.turn > 0) text = fmt::format("{:.2f} deg", degrees * shown.turn);
+  if (shown.turn > 0) text = fmt::format("{:.2f} deg", degrees_per_radian * shown.turn);
   if (shown.shift > 0) text += fmt::format("{}{:.1f} cm", text.empty() ? "" : " and ", 100 * shown.shift);
   return text;
 }

@@ -3,8 +3,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "degrees.hpp"
 #include "egocal/bus/pose_json.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/directions.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "offline/common/backing_of.hpp"
@@ -102,7 +102,7 @@ nlohmann::ordered_json report_json(const SolveResult& result, const std::optiona
   if (truth) {
     const ExtrinsicError error = extrinsic_error(to_dual_quaternion(*truth), to_dual_quaternion(T));
     json["error_translation_m"] = error.translation;
-    json["error_rotation_deg"] = error.rotation * degrees;
+    json["error_rotation_deg"] = error.rotation * degrees_per_radian;
   }
   return json;
 }

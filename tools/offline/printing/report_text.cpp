@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "degrees.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/directions.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/in_words.hpp"
@@ -38,7 +38,7 @@ const char* optimality_text(Optimality optimality) {
 
 std::string pose_text(const char* label, const Pose& T, const std::string& unit) {
   const Eigen::Vector3d t = without_negative_zeros(T.translation, 6);
-  const Eigen::Vector3d angles = without_negative_zeros(roll_pitch_yaw(T.rotation) * degrees, 5);
+  const Eigen::Vector3d angles = without_negative_zeros(roll_pitch_yaw(T.rotation) * degrees_per_radian, 5);
   return fmt::format(
       "{}\n  {:<30} {:12.6f} {:12.6f} {:12.6f}\n"
       "  quaternion w x y z             {:12.9f} {:12.9f} {:12.9f} {:12.9f}\n"
@@ -93,7 +93,7 @@ std::string certificate_text(const SolveResult& result) {
       "\ncertificate   cost {:.6g}, lower bound {:.6g}, gap {:.3g} ({:.2f} of rounding); anything as good is "
       "within {:.2g} m, {:.2g} deg\n",
       certificate.cost, certificate.lower_bound, certificate.gap, certificate.scaled_gap,
-      certificate.reach_translation, certificate.reach_rotation * degrees);
+      certificate.reach_translation, certificate.reach_rotation * degrees_per_radian);
   if (any_from_nominal(result.calibration)) text += fmt::format("              {}\n", cost_with_nominal);
   if (!result.note.empty()) text += fmt::format("              {}\n", result.note);
   return text;
@@ -110,7 +110,8 @@ std::string uncertainty_text(const Calibration& calibration, const char* frame) 
     if (backing[i] == Backing::nominal) value = "NOT OBSERVABLE, from the nominal value";
     if (calibration.observability.observable[i])
       value = std::isfinite(stddev)
-                  ? fmt::format("+- {:.3f} {}", stddev * (rotation ? degrees : 100), rotation ? "deg" : "cm")
+                  ? fmt::format("+- {:.3f} {}", stddev * (rotation ? degrees_per_radian : 100),
+                                rotation ? "deg" : "cm")
                   : "observable, too few motions for a standard deviation";
     text += fmt::format("  {:<12}{}\n", direction_names[i], value);
   }
@@ -160,8 +161,8 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
   if (truth) {
     const ExtrinsicError error =
         extrinsic_error(to_dual_quaternion(*truth), to_dual_quaternion(calibration.T_a_b));
-    text += fmt::format("\nerror against the truth (32)   {:.3f} deg, {:.2f} cm\n", error.rotation * degrees,
-                        error.translation * 100);
+    text += fmt::format("\nerror against the truth (32)   {:.3f} deg, {:.2f} cm\n",
+                        error.rotation * degrees_per_radian, error.translation * 100);
   }
   return text;
 }

@@ -9,8 +9,8 @@
 #include <array>
 #include <cmath>
 
-#include "degrees.hpp"
 #include "egocal/bus/pose_json.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "offline/common/backing_of.hpp"
 #include "offline/extrinsics/named_extrinsic.hpp"
@@ -86,7 +86,7 @@ Json extrinsic_json(const RigReport& report, std::size_t i) {
     const ExtrinsicError error =
         extrinsic_error(to_dual_quaternion(*truth), to_dual_quaternion(calibration.T_a_b));
     json["error_translation_m"] = error.translation;
-    json["error_rotation_deg"] = degrees * error.rotation;
+    json["error_rotation_deg"] = degrees_per_radian * error.rotation;
   }
   return json;
 }
@@ -96,7 +96,7 @@ Json loop_json(const RigReport& report, const Loop& loop) {
   json["sensors"] = Json::array();
   for (const std::size_t sensor : loop.sensors) json["sensors"].push_back(report.names[sensor]);
   json["translation_m"] = length(loop.misfit, 0);
-  json["rotation_deg"] = degrees * length(loop.misfit, 3);
+  json["rotation_deg"] = degrees_per_radian * length(loop.misfit, 3);
   json["misfit"] = loop.misfit;
   json["stddev"] = loop.stddev;
   json["chi_square"] = loop.chi_square;
@@ -145,7 +145,7 @@ std::string pairs_text(const RigReport& report, std::size_t width) {
     const RigPairAnswer& pair = report.solution.pairs[i];
     text += fmt::format("{:<{}}  {}  {:>10}  {:>10}  {}, {}\n", label_of(report, pair.a, pair.b), width,
                         pose_numbers(calibration.T_a_b, backing_of(calibration)),
-                        largest_stddev(calibration.observability, 3, degrees, "deg"),
+                        largest_stddev(calibration.observability, 3, degrees_per_radian, "deg"),
                         largest_stddev(calibration.observability, 0, 100, "cm"),
                         to_string(calibration.verdict), to_string(pair.certificate.optimality));
   }
@@ -155,7 +155,7 @@ std::string pairs_text(const RigReport& report, std::size_t width) {
 std::string loop_state(const Loop& loop) {
   if (loop.known == 0) return "unknown: its pairs do not know it well enough";
   const std::string misfit =
-      fmt::format("misfit {:.3f} deg, {:.2f} cm (chance {:.2g})", degrees * length(loop.misfit, 3),
+      fmt::format("misfit {:.3f} deg, {:.2f} cm (chance {:.2g})", degrees_per_radian * length(loop.misfit, 3),
                   100 * length(loop.misfit, 0), loop.false_alarm);
   const std::string part =
       loop.known < 6 ? fmt::format(" in the {} of 6 directions that are known", loop.known) : "";
@@ -217,10 +217,11 @@ std::string set_text(const RigReport& report, std::size_t width) {
   if (!report.apart.empty())
     text += fmt::format("not in it, without an answer that connects them: {}\n", names_apart(report));
   for (const NamedExtrinsic& edge : tree_of(report).edges)
-    text += fmt::format("{:<{}}  {}  {:>10}  {:>10}  {}, {}\n", edge.parent + " -> " + edge.child, width,
-                        pose_numbers(edge.T_parent_child, edge.backing.value_or(std::array<Backing, 6>{})),
-                        largest_stddev(edge, 3, degrees, "deg"), largest_stddev(edge, 0, 100, "cm"),
-                        edge.verdict, edge.certified ? "certified" : "undecided");
+    text +=
+        fmt::format("{:<{}}  {}  {:>10}  {:>10}  {}, {}\n", edge.parent + " -> " + edge.child, width,
+                    pose_numbers(edge.T_parent_child, edge.backing.value_or(std::array<Backing, 6>{})),
+                    largest_stddev(edge, 3, degrees_per_radian, "deg"), largest_stddev(edge, 0, 100, "cm"),
+                    edge.verdict, edge.certified ? "certified" : "undecided");
   return text;
 }
 

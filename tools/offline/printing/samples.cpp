@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "degrees.hpp"
 #include "egocal/bus/pose_json.hpp"
+#include "egocal/degrees.hpp"
 
 namespace egocal::tools {
 
@@ -38,13 +38,13 @@ nlohmann::ordered_json samples_json(const SolveResult& result) {
   json["spread_mm"] = {{"median", 1e3 * samples.spread_median},
                        {"rms", 1e3 * samples.spread_rms},
                        {"largest", 1e3 * samples.spread_largest}};
-  json["noise"] = {{"rotation_deg", samples.noise_rotation * degrees},
+  json["noise"] = {{"rotation_deg", samples.noise_rotation * degrees_per_radian},
                    {"translation_mm", 1e3 * samples.noise_translation}};
   json["residuals"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < samples.residuals.size(); ++i) {
     const SampleResidual& residual = samples.residuals[i];
     json["residuals"].push_back({{"row", result.matched.rows_a[i] + 1},
-                                 {"rotation_deg", residual.rotation * degrees},
+                                 {"rotation_deg", residual.rotation * degrees_per_radian},
                                  {"translation_mm", 1e3 * residual.translation},
                                  {"wrong", residual.wrong}});
   }
@@ -63,7 +63,7 @@ std::string samples_text(const SolveResult& result) {
                     : fmt::format(", {} wrong and not used: {} {}", wrong.size(),
                                   wrong.size() == 1 ? "row" : "rows", fmt::join(wrong, ", ")),
       1e3 * samples.spread_median, 1e3 * samples.spread_rms, 1e3 * samples.spread_largest,
-      samples.noise_rotation * degrees, 1e3 * samples.noise_translation);
+      samples.noise_rotation * degrees_per_radian, 1e3 * samples.noise_translation);
   text += fmt::format("{:<14}x y z {:.6f} {:.6f} {:.6f} m, q w x y z {:.9f} {:.9f} {:.9f} {:.9f} ({})\n",
                       "target", Y.translation.x(), Y.translation.y(), Y.translation.z(), Y.rotation.w(),
                       Y.rotation.x(), Y.rotation.y(), Y.rotation.z(), target_name(result));

@@ -7,8 +7,8 @@
 
 #include <cmath>
 
-#include "degrees.hpp"
 #include "egocal/bus/diagnosis_json.hpp"
+#include "egocal/degrees.hpp"
 
 namespace egocal::tools {
 
@@ -42,11 +42,11 @@ std::string fit_in_words(const Fit& fit) {
   if (fit.tenths.empty()) return "";
   return fmt::format(
       "{} deg, {} cm ({} % of the distance) a motion{}; 95 % below {} deg, {} cm; lengths b / a {:.4g}",
-      rounded(fit.rotation_median * degrees), rounded(100 * fit.translation_median),
+      rounded(fit.rotation_median * degrees_per_radian), rounded(100 * fit.translation_median),
       fit.translation_relative_median < 0.995 ? fmt::format("{:.2g}", 100 * fit.translation_relative_median)
                                               : rounded(100 * fit.translation_relative_median),
       fit.motion_seconds > 0 ? fmt::format(" of {:.2g} s", fit.motion_seconds) : "",
-      rounded(fit.rotation_95 * degrees), rounded(100 * fit.translation_95), fit.length_ratio);
+      rounded(fit.rotation_95 * degrees_per_radian), rounded(100 * fit.translation_95), fit.length_ratio);
 }
 
 std::string trust_text(const Calibration& calibration) {

@@ -10,7 +10,7 @@
 #include <map>
 #include <utility>
 
-#include "degrees.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/certain_of_either.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/rig/rig_moves.hpp"
@@ -24,7 +24,7 @@ namespace {
 std::string size_of(const Move& move) {
   const auto [turn, shift] = shown_change(move);
   if (turn == 0) return fmt::format("{:.1f} cm", 100 * shift);
-  const std::string turned = fmt::format("{:.2f} deg", degrees * turn);
+  const std::string turned = fmt::format("{:.2f} deg", degrees_per_radian * turn);
   return shift == 0 ? turned : fmt::format("{}, {:.1f} cm", turned, 100 * shift);
 }
 

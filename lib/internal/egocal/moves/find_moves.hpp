@@ -5,11 +5,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "egocal/degrees.hpp"
 #include "egocal/problem/problem.hpp"
 
 namespace egocal {
@@ -59,8 +59,8 @@ struct MovesOptions {
   /// A change is reported where one of its components exceeds this by two standard deviations: odometry has
   /// systematic errors nearly as large that depend on where and how the vehicle drives (0.11 deg between two
   /// lidar odometries on KITTI 07, docs/moves.md).
-  double least_rotation = 0.15 * std::numbers::pi / 180;  ///< [rad]
-  double least_translation = 0.01;                        ///< [m]
+  double least_rotation = 0.15 * radians_per_degree;  ///< [rad]
+  double least_translation = 0.01;                    ///< [m]
   /// Blocks that a stretch of the drive is divided into; the test's work grows with their square. A change
   /// between two ends of a block is found a little later: of bumps 15 s before the end of 135 s 35 of 40 are
   /// found with 64 blocks, 38 with 128.
@@ -119,7 +119,7 @@ struct MovesOptions {
   /// answer worse than their own by this factor, in the root mean square without the tails. The test of
   /// blocks is linear, and noise that wanders turns the answer of the last seconds by any angle. Study:
   /// docs/moves.md, "Limits".
-  double large_turn = 20 * std::numbers::pi / 180, large_turn_contradicts = 2.5;
+  double large_turn = 20 * radians_per_degree, large_turn_contradicts = 2.5;
   ChangeTestOptions test;
 };
 

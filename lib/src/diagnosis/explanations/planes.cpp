@@ -3,7 +3,6 @@
 #include "diagnosis/explanations/planes.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -11,13 +10,12 @@
 
 #include "diagnosis/explanations/turning/plane_turning.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 
 namespace egocal::detail {
 
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 Finding plane_finding(char which, std::string claim, std::string cure, bool certain = true) {
   Finding finding;
@@ -103,7 +101,8 @@ std::vector<Finding> off_axis(const PlaneTurning& turning, double aligned, const
       findings.push_back(plane_finding(
           which,
           format("Sensor %s turns about %s, which is %.2f +- %.2f deg from the normal of its ground plane.",
-                 mark(which), axis_in_words(turns.axis).c_str(), turns.off / degree, turns.stddev / degree),
+                 mark(which), axis_in_words(turns.axis).c_str(), turns.off / radians_per_degree,
+                 turns.stddev / radians_per_degree),
           normal_to_check(which, turns),
           apart_by_more(turning.apart, tilt) || std::cos(turns.off) < aligned));
   return findings;
@@ -119,7 +118,7 @@ std::vector<Finding> normals_apart(const PlaneTurning& turning, bool one_axis, c
   const std::string claim = format(
       "By the turns of both sensors, the normals of the ground planes of {a} and {b} are %.2f +- %.2f "
       "deg apart",
-      turning.apart.angle / degree, turning.apart.stddev / degree);
+      turning.apart.angle / radians_per_degree, turning.apart.stddev / radians_per_degree);
   std::vector<Finding> findings;
   for (const auto& [which, turns, cleared_by_own] :
        {std::tuple{'a', turning.a, only_b}, std::tuple{'b', turning.b, only_a}})
@@ -130,7 +129,7 @@ std::vector<Finding> normals_apart(const PlaneTurning& turning, bool one_axis, c
       findings.push_back(
           plane_finding(which,
                         claim + format("; that of %s is %.1f deg from the axis that its sensor turns about.",
-                                       mark(which), turns.off / degree),
+                                       mark(which), turns.off / radians_per_degree),
                         normal_to_check(which, turns), only_a || only_b));
   return findings;
 }

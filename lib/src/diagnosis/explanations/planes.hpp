@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <numbers>
 #include <vector>
 
 #include "diagnosis/motions/robust_fit.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/options.hpp"
 #include "egocal/problem/problem.hpp"
 
@@ -22,7 +22,7 @@ struct PlaneTiltOptions {
   /// How far the normals may be apart by the turns of both sensors [rad]: 0.32 to 0.48 degrees for the planes
   /// of KITTI, below 0.1 in the simulation. Within it the answer keeps to a degree
   /// (DiagnosisOptions::tolerance_rotation).
-  double apart = 0.75 * std::numbers::pi / 180;
+  double apart = 0.75 * radians_per_degree;
   /// Correlation of the turns of both sensors from which they say how far the normals are apart: two thirds
   /// of their squares are no noise. Straight drives have 0.0 to 0.3, and called honest planes 112 degrees
   /// apart.
@@ -30,7 +30,7 @@ struct PlaneTiltOptions {
   /// How far a normal may be from the axis that its sensor turns about [rad]. A body leans out of curves, by
   /// up to 3 degrees where it is driven hard and one way round; both sensors see that alike. KITTI: 0.2 to
   /// 0.6 degrees, hills 0.9.
-  double alone = 4 * std::numbers::pi / 180;
+  double alone = 4 * radians_per_degree;
   /// Which of two normals that are apart is wrong: the one that is this part of it off its own axis, where
   /// the other one is not even the smaller part off. Mathematics: 1 and 0 but for what both sensors see.
   double blamed = 0.7, cleared = 0.35;

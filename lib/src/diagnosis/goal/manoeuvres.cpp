@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "diagnosis/goal/motion_information.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/problem/cost.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -27,7 +28,6 @@ struct Manoeuvre {
   bool turns_alternate;    ///< from side to side; otherwise one way all the time
 };
 
-constexpr double degree = std::numbers::pi / 180;
 /// Motions of a manoeuvre that its information is the mean of: enough for products of waves up to twice the
 /// slowest. Changes no answer.
 constexpr int motions_each = 8;
@@ -51,31 +51,32 @@ const char* as_before(Platform platform) {
 std::vector<Manoeuvre> catalogue(Platform platform) {
   using V = Eigen::Vector3d;
   if (platform == Platform::car)
-    return {
-        {"Drive tight curves both ways: a figure eight, twice.", V(0, 0, 20) * degree, V(0.6, 0, 0), true},
-        {"Drive a slalom.", V(1, 0, 8) * degree, V(0.7, 0, 0), true},
-        {"Drive straight over speed bumps or a ramp, five times.", V(0, 4, 0) * degree, V(0.4, 0, 0), true},
-        {"Drive over a kerb or a ramp at an angle, both ways, five times.", V(4, 4, 2) * degree, V(0.3, 0, 0),
-         true},
-        {"Drive banked curves.", V(3, 1, 10) * degree, V(0.8, 0, 0), false},
-        {"Drive straight on for a while.", V(0, 0, 0.5) * degree, V(1, 0, 0), true}};
+    return {{"Drive tight curves both ways: a figure eight, twice.", V(0, 0, 20) * radians_per_degree,
+             V(0.6, 0, 0), true},
+            {"Drive a slalom.", V(1, 0, 8) * radians_per_degree, V(0.7, 0, 0), true},
+            {"Drive straight over speed bumps or a ramp, five times.", V(0, 4, 0) * radians_per_degree,
+             V(0.4, 0, 0), true},
+            {"Drive over a kerb or a ramp at an angle, both ways, five times.",
+             V(4, 4, 2) * radians_per_degree, V(0.3, 0, 0), true},
+            {"Drive banked curves.", V(3, 1, 10) * radians_per_degree, V(0.8, 0, 0), false},
+            {"Drive straight on for a while.", V(0, 0, 0.5) * radians_per_degree, V(1, 0, 0), true}};
   const bool arm = platform == Platform::arm, drone = platform == Platform::drone;
   return {{arm     ? "Turn the hand about its x axis, both ways, by 30 degrees and more."
            : drone ? "Fly sideways, left and right, with strong roll."
                    : "Tilt the rig about its x axis, both ways, five times.",
-           V(20, 0, 0) * degree, V(0.2, 0.5, 0.2), true},
+           V(20, 0, 0) * radians_per_degree, V(0.2, 0.5, 0.2), true},
           {arm     ? "Turn the hand about its y axis, both ways, by 30 degrees and more."
            : drone ? "Fly forward and back, with strong pitch."
                    : "Tilt the rig about its y axis, both ways, five times.",
-           V(0, 20, 0) * degree, V(0.5, 0.2, 0.2), true},
+           V(0, 20, 0) * radians_per_degree, V(0.5, 0.2, 0.2), true},
           {arm     ? "Turn the hand about its z axis, both ways, by 30 degrees and more."
            : drone ? "Yaw left and right by half a turn while you fly a circle."
                    : "Turn the rig about its z axis, both ways, five times.",
-           V(0, 0, 20) * degree, V(0.5, 0.5, 0), true},
+           V(0, 0, 20) * radians_per_degree, V(0.5, 0.5, 0), true},
           {arm     ? "Move the hand to and fro along all three axes without turning it."
            : drone ? "Climb and descend, and fly to all four sides."
                    : "Move the rig along all three axes without turning it.",
-           V(0.5, 0.5, 0.5) * degree, V(1, 1, 1), true}};
+           V(0.5, 0.5, 0.5) * radians_per_degree, V(1, 1, 1), true}};
 }
 
 /// What the drive so far says of the vehicle: the axis that it turns about most is up, and its way forward.

@@ -4,10 +4,10 @@
 // frame, or the rotation of the inverse pose.
 #pragma once
 
-#include <numbers>
 #include <vector>
 
 #include "diagnosis/motions/motions.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/pairing/trajectory.hpp"
 
 namespace egocal::detail {
@@ -22,8 +22,8 @@ std::vector<PoseReading> axes_readings(const Instants& instants, Side wrong, int
 /// When turned axes explain the motions. Odometries that drift turn their positions against their rotations a
 /// little: by up to 4.6 degrees in the 13 runs of the public benchmark with drift, with gains up to 0.54.
 struct TurnedAxesOptions {
-  double small = 10 * std::numbers::pi / 180;  ///< [rad]
-  double gain_of_small = 1;                    ///< mean log ratio of the squared residuals, at least
+  double small = 10 * radians_per_degree;  ///< [rad]
+  double gain_of_small = 1;                ///< mean log ratio of the squared residuals, at least
   /// The gain for a finding that is uncertain: above the benchmark's 0.54; 1,260 clean simulated drives have
   /// at most 0.2.
   double possible_gain_of_small = 0.6;

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/mount/back_and_forth.hpp"
 
-#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "diagnosis/mount/mount_pairs.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/microseconds.hpp"
 #include "moves/switching.hpp"
@@ -38,7 +38,7 @@ std::optional<Finding> back_and_forth(const Instants& instants, const Answered& 
   finding.message = format(
       "The mounting goes back and forth between two places, %zu times, first about %.0f s after the start. "
       "They are %.2g deg and %s apart.",
-      found->switches, *finding.time, apart.rotation * 180 / std::numbers::pi,
+      found->switches, *finding.time, apart.rotation * degrees_per_radian,
       length_in_words(apart.translation, options.unit == LengthUnit::metres).c_str());
   finding.remedy = "Fasten the mounting, and record again.";
   return finding;

@@ -8,6 +8,7 @@
 
 #include "diagnosis/mount/swaying_mount.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/geometry/pose.hpp"
 #include "linear_algebra/normal_equations.hpp"
 #include "statistics/median.hpp"
@@ -189,7 +190,7 @@ std::optional<Finding> following_mount(const Instants& instants, int stride, con
       "The motions contradict each other: the rotation between the sensors changes by up to %.2g deg "
       "with how they turn and accelerate, which is %.0f %% of what no mounting explains: a sensor is "
       "on a part that is steered or sprung, or its mounting has play.",
-      found->change * 180 / std::numbers::pi, 100 * found->explained);
+      found->change * degrees_per_radian, 100 * found->explained);
   finding.remedy = "Fasten both sensors to one rigid part, and record again.";
   return finding;
 }

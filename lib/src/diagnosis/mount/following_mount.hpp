@@ -5,10 +5,10 @@
 // accelerate; noise is not, whatever its tails are.
 #pragma once
 
-#include <numbers>
 #include <optional>
 
 #include "diagnosis/motions/motions.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
 
 namespace egocal::detail {
@@ -31,7 +31,7 @@ struct FollowingOptions {
   double explained = 0.3;
   /// Least size of the change that the relation explains, which is smaller in 95 % of the time [rad]: as
   /// large as what users call wrong.
-  double least_change = std::numbers::pi / 180;
+  double least_change = radians_per_degree;
   /// And that change is at least this many times what the better interpolation changes
   /// (SwayOptions::of_interpolation): a bicycle that leans faster than it is measured has 14, mounts 80 and
   /// more.

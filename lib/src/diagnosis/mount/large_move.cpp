@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "diagnosis/motions/correction.hpp"
 #include "diagnosis/motions/robust_fit.hpp"
 #include "diagnosis/motions/standing_still.hpp"
 #include "diagnosis/mount/division.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"
 
@@ -88,7 +88,7 @@ Finding worded(const Division& found, double time, const Comparison& comparison,
   finding.time = time;
   finding.improvement = std::exp(comparison.gain);
   finding.T_a_b = to_pose(found.after.T);
-  const double turned = change.tail<3>().norm() * 180 / std::numbers::pi;
+  const double turned = change.tail<3>().norm() * degrees_per_radian;
   const std::string size = turned < 1 ? "shifted by " + length_in_words(change.head<3>().norm(), metres)
                                       : format("turned by %.0f deg", turned);
   finding.message = format(

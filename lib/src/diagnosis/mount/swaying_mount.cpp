@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/geometry/pose.hpp"
 #include "statistics/median.hpp"
 
@@ -121,7 +122,7 @@ std::optional<Finding> swaying_mount(const Instants& instants, const Answered& a
   finding.message = format(
       "The rotation between the sensors changes by %.2g deg within %.2g s, and by no more in a longer time: "
       "the mounting shakes, or the rotations of a stream do.",
-      sways * 180 / std::numbers::pi, found->time);
+      sways * degrees_per_radian, found->time);
   finding.remedy = "Fasten the mounting, or check the filter that makes the rotations, and record again.";
   return finding;
 }

@@ -5,11 +5,11 @@
 // the shortest time.
 #pragma once
 
-#include <numbers>
 #include <optional>
 #include <vector>
 
 #include "diagnosis/motions/motions.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
 
 namespace egocal::detail {
@@ -18,7 +18,7 @@ namespace egocal::detail {
 struct SwayOptions {
   /// Root mean square of the change [rad]: larger than attitude errs in such a time, 1.4 times the standard
   /// deviation of the rotation.
-  double least = 1.25 * std::numbers::pi / 180;
+  double least = 1.25 * radians_per_degree;
   double longest_time = 30;         ///< in which it changes so [s]: a heading may err slowly
   double next_stride = 1.25;        ///< each as a multiple of the one before
   std::size_t most_motions = 500;   ///< of one stride, evenly spread

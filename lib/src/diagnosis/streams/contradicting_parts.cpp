@@ -9,6 +9,7 @@
 #include "diagnosis/motions/robust_fit.hpp"
 #include "diagnosis/motions/standing_still.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "statistics/median.hpp"
 #include "statistics/quantile.hpp"
 
@@ -95,18 +96,17 @@ ContradictingParts contradicting_parts(const Instants& instants, int stride, con
 
 std::optional<Finding> contradicting_parts_finding(const ContradictingParts& found) {
   if (found.parts.empty()) return std::nullopt;
-  constexpr double degrees = 180 / std::numbers::pi;
   std::string list;
   for (const ContradictingPart& part : found.parts)
-    list += format("%s%.2g deg from %.1f to %.1f s", list.empty() ? "" : ", ", part.rotation * degrees,
-                   part.begin, part.end);
+    list += format("%s%.2g deg from %.1f to %.1f s", list.empty() ? "" : ", ",
+                   part.rotation * degrees_per_radian, part.begin, part.end);
   Finding finding;
   finding.code = "mount_moved";
   finding.time = found.parts.front().begin;
   finding.message = format(
       "These motions contradict each other: the answer leaves %s, and %.2g deg in most of the drive. "
       "A sensor was moved, or its odometry was lost.",
-      list.c_str(), found.others * degrees);
+      list.c_str(), found.others * degrees_per_radian);
   finding.remedy = "Calibrate the parts of the drive separately, and compare their answers.";
   return finding;
 }

@@ -4,11 +4,11 @@
 // within seconds, neither place of a move is found.
 #pragma once
 
-#include <numbers>
 #include <optional>
 #include <vector>
 
 #include "diagnosis/motions/motions.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
 
 namespace egocal::detail {
@@ -30,7 +30,7 @@ struct ContradictingPartsOptions {
   /// each degree that is turned. Clean drives: 3.2 (116 of an independent simulator).
   double times = 10;
   /// And its quantile is at least this [rad]: as large as what users call wrong.
-  double least_rotation = std::numbers::pi / 180;
+  double least_rotation = radians_per_degree;
   /// Motions of this part of the length leave so many times more for each degree, too: a single jump is in
   /// few of them.
   int shorter = 4;

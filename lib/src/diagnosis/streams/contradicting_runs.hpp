@@ -5,10 +5,10 @@
 #pragma once
 
 #include <cstddef>
-#include <numbers>
 #include <vector>
 
 #include "diagnosis/motions/motions.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
 
 namespace egocal::detail {
@@ -19,7 +19,7 @@ struct ContradictingRunsOptions {
   double times = 6, of_motion = 0.1;
   /// A rotation contradicts only if the answer also leaves at least this of it [rad]: as large as what users
   /// call wrong.
-  double least_rotation = std::numbers::pi / 180;
+  double least_rotation = radians_per_degree;
   /// A run lasts longer than a motion by this many instants: one jump is in as many motions as one spans, and
   /// wrong poses are few in a row (WrongPosesOptions::most_in_a_row).
   double least_instants = 8;

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
 #include "diagnosis/streams/turning_axis.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 
@@ -89,7 +89,7 @@ Finding never_tilts(char which, double tilt) {
   say(finding,
       format("The rotations of %s are about one axis alone although %s tilts by %.1f deg: roll and pitch are "
              "missing.",
-             mark(which), mark(which == 'a' ? 'b' : 'a'), tilt * 180 / std::numbers::pi),
+             mark(which), mark(which == 'a' ? 'b' : 'a'), tilt * degrees_per_radian),
       format("Give whole rotations of %s, or ground planes (planar mode).", mark(which)));
   return finding;
 }
@@ -103,11 +103,11 @@ Finding level_positions(char which, char coordinate, double tilt, bool of_other)
       of_other ? format(
                      "The positions of %s never change in %c, and it turns about that axis alone, although "
                      "%s tilts by %.1f deg: an odometry in two dimensions beside one in three.",
-                     mark(which), coordinate, mark(which == 'a' ? 'b' : 'a'), tilt * 180 / std::numbers::pi)
+                     mark(which), coordinate, mark(which == 'a' ? 'b' : 'a'), tilt * degrees_per_radian)
                : format(
                      "The positions of %s never change in %c although it tilts by %.1f deg: a coordinate is "
                      "missing.",
-                     mark(which), coordinate, tilt * 180 / std::numbers::pi);
+                     mark(which), coordinate, tilt * degrees_per_radian);
   say(finding, claim,
       format("Give positions of %s in three dimensions, or ground planes (planar mode).", mark(which)));
   return finding;

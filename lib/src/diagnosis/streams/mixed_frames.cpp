@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <string>
 #include <vector>
 
 #include "diagnosis/streams/mixed_frames_jumps.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "statistics/median.hpp"
 
@@ -143,14 +143,14 @@ Finding worded(const OtherFrame& frame, bool metres) {
           mark(which)),
       format(": %.2g %% of them are of another one than the rest, %s and %.2g deg from it.",
              100 * frame.share, length_in_words(frame.distance, metres).c_str(),
-             180 / std::numbers::pi * frame.angle));
+             degrees_per_radian * frame.angle));
   return finding;
 }
 
 Finding worded(Side side, Half half, const Pattern& pattern, bool certain, bool metres) {
   const char which = side == Side::a ? 'a' : 'b';
   const auto words = [&](double value) {
-    return half == &Typical::rotation ? format("%.3g deg", 180 / std::numbers::pi * value)
+    return half == &Typical::rotation ? format("%.3g deg", degrees_per_radian * value)
                                       : length_in_words(value, metres);
   };
   Finding finding;

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "statistics/quantile.hpp"
 
 namespace egocal::detail {
@@ -48,7 +48,7 @@ std::optional<Finding> impossible_pace(const Motions& motions, double duration, 
   finding.certain = moves;  // a fast sensor alone is possible
   finding.message = format(
       "By the stamps %.0f poses come in a second, the sensors go %.0f m/s and turn %.0f deg/s: ", 1 / period,
-      speed, turning * 180 / std::numbers::pi);
+      speed, turning * degrees_per_radian);
   const double factor = likely_factor(period, options.usual_period);
   if (factor > 1) {
     finding.value = factor;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "diagnosis/streams/flat.hpp"
@@ -12,6 +11,7 @@
 #include "diagnosis/streams/step_size.hpp"
 #include "diagnosis/streams/two_senders.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/pairing/match_samples.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -175,8 +175,7 @@ std::vector<Finding> in_one_frame(const Answered& answered, const StreamCheckOpt
   finding.message = format(
       "The answer is the identity to %.2f deg and %s: both streams may be of one frame, such as that of the "
       "vehicle.",
-      x.tail<3>().norm() * 180 / std::numbers::pi,
-      length_in_words(x.head<3>().norm(), options.metres).c_str());
+      x.tail<3>().norm() * degrees_per_radian, length_in_words(x.head<3>().norm(), options.metres).c_str());
   finding.remedy =
       "Give the poses of the sensors themselves, not moved to a common frame; ignore this where the sensors "
       "really sit side by side and look the same way.";

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "diagnosis/motions/answer_change.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/directions.hpp"
 
@@ -56,7 +56,7 @@ std::optional<Finding> undersampled(const Instants& instants, const Answered& an
   }
   if (worst == 6) return std::nullopt;
   const bool length = worst < 3;
-  const double unit = length ? 100 : 180 / std::numbers::pi;
+  const double unit = length ? 100 : degrees_per_radian;
   const char interpolated = instants.b_slower() ? 'a' : 'b', other = instants.b_slower() ? 'b' : 'a';
   Finding finding;
   finding.code = std::string("undersampled_") + interpolated;

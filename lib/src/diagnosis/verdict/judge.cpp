@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "diagnosis/explanations/times/late_positions.hpp"
 #include "diagnosis/goal/goal.hpp"
@@ -14,6 +13,7 @@
 #include "diagnosis/verdict/nominal.hpp"
 #include "diagnosis/verdict/stability.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/certain_of_either.hpp"
 #include "egocal/directions.hpp"
 #include "statistics/distributions.hpp"
@@ -25,7 +25,6 @@ namespace detail {
 
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi;
 /// 95 % of a normal distribution, on one side (mathematics).
 constexpr double confidence_one_sided = 1.645;
 /// 95 % of the length of three equal, independent components (mathematics).
@@ -129,11 +128,11 @@ void add_spread_of_unstable(const std::array<double, 6>& unstable, const Answere
 std::string not_known_yet(const Known& known, const DiagnosisOptions& options) {
   const bool metres = options.unit == LengthUnit::metres;
   std::string together;
-  if (std::isfinite(known.rotation)) together += format("%.3g deg", known.rotation * degrees);
+  if (std::isfinite(known.rotation)) together += format("%.3g deg", known.rotation * degrees_per_radian);
   if (std::isfinite(known.translation))
     together += (together.empty() ? "" : ", ") + length_in_words(known.translation, metres);
   if (!together.empty()) together = " (all directions together, 95 %: " + together + ")";
-  return format("Not known to %.3g deg and %s yet", options.tolerance_rotation * degrees,
+  return format("Not known to %.3g deg and %s yet", options.tolerance_rotation * degrees_per_radian,
                 length_in_words(options.tolerance_translation, metres).c_str()) +
          together + ": " + known.unknown + ".";
 }

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/directions.hpp"
 #include "egocal/uncertainty/observability.hpp"
@@ -92,10 +92,9 @@ Disagreements disagreements_of(const Pose& nominal, const Answered& answered, co
 
 /// "30 deg (roll, pitch, yaw) and 2.83 m (x, y)": those beyond their limits.
 std::string in_words(const Disagreements& disagreements) {
-  constexpr double in_degrees = 180 / std::numbers::pi;
   std::string text;
   const Disagreement &turn = disagreements.rotation, &shift = disagreements.translation;
-  if (turn.part() > 1) text = format("%.3g deg (%s)", turn.size * in_degrees, turn.names.c_str());
+  if (turn.part() > 1) text = format("%.3g deg (%s)", turn.size * degrees_per_radian, turn.names.c_str());
   if (shift.part() > 1)
     text += (text.empty() ? "" : " and ") + length_in_words(shift.size) + " (" + shift.names + ")";
   return text;

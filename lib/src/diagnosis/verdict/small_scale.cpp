@@ -5,7 +5,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "diagnosis/verdict/far_off.hpp"
 #include "diagnosis/verdict/foreseen.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/directions.hpp"
 #include "scale/joint_jackknife.hpp"
@@ -151,12 +151,11 @@ bool beyond_stated(const Vector6d& moved, const Answered& answered, double matte
 
 /// "67.8 cm, mostly in z"
 std::string in_words(const Vector6d& moved, const DiagnosisOptions& options) {
-  constexpr double to_degrees = 180 / std::numbers::pi;
   const double shift = moved.head<3>().norm(), turn = moved.tail<3>().norm();
   const bool turns = turn / options.tolerance_rotation > shift / options.tolerance_translation;
   Eigen::Index most = 0;
   (turns ? moved.tail<3>() : moved.head<3>()).cwiseAbs().maxCoeff(&most);
-  return (turns ? format("%.2g deg", turn * to_degrees)
+  return (turns ? format("%.2g deg", turn * degrees_per_radian)
                 : length_in_words(shift, options.unit == LengthUnit::metres)) +
          format(", mostly in %s", direction_names[most + (turns ? 3 : 0)]);
 }

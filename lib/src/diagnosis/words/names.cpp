@@ -4,9 +4,9 @@
 #include <charconv>
 #include <cmath>
 #include <initializer_list>
-#include <numbers>
 #include <utility>
 
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/options.hpp"
 #include "egocal/diagnosis/verdict.hpp"
 
@@ -75,7 +75,7 @@ std::optional<GoalOptions> goal_from_text(std::string_view text) {
   const std::size_t comma = text.find(',');
   if (comma == std::string_view::npos) return std::nullopt;
   const std::optional<double> rotation =
-      quantity(text.substr(0, comma), {{"deg", std::numbers::pi / 180}, {"rad", 1}});
+      quantity(text.substr(0, comma), {{"deg", radians_per_degree}, {"rad", 1}});
   const std::optional<double> translation =
       quantity(text.substr(comma + 1), {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}});
   if (!rotation || !translation) return std::nullopt;

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
-#include <numbers>
 #include <utility>
 
 #include "diagnosis/motions/axes.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 
 namespace egocal::detail {
@@ -44,7 +44,7 @@ std::string turned(const Eigen::Matrix3d& axes) {
   const Eigen::Vector3d turn = turn_of(axes);
   const double angle = turn.norm();
   const Eigen::Vector3d axis = angle > 0 ? Eigen::Vector3d(turn / angle) : Eigen::Vector3d::UnitZ();
-  return format("positions turned by %.1f deg about %s%s", angle * 180 / std::numbers::pi,
+  return format("positions turned by %.1f deg about %s%s", angle * degrees_per_radian,
                 axis_in_words(axis).c_str(), mirrored ? " and mirrored at the origin" : "");
 }
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "egocal/degrees.hpp"
+
 namespace egocal::detail {
 
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 /// 1 - R of directions: 0 where all are the same, about 1 where they are spread over the circle.
 double spread(const std::complex<double>& sum, int count) {
@@ -59,7 +59,8 @@ void AngleUnit::add(double time, const std::optional<Eigen::Vector2d>& position,
     if (chord.norm() < chords.length) continue;
     const std::complex<double> direction = std::polar(1.0, 2 * std::atan2(chord.y(), chord.x()));
     const std::complex<double> as_radians = doubled_middle(chords.angle_at_begin, angle);
-    const std::complex<double> as_degrees = doubled_middle(degree * chords.angle_at_begin, degree * angle);
+    const std::complex<double> as_degrees =
+        doubled_middle(radians_per_degree * chords.angle_at_begin, radians_per_degree * angle);
     ++chords.count;
     chords.path += direction;
     chords.radians[0] += direction * std::conj(as_radians);

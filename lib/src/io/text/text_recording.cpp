@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "egocal/degrees.hpp"
 #include "egocal/error.hpp"
 #include "egocal/io/checked_pose.hpp"
 #include "egocal/io/misplaced_times.hpp"
@@ -20,7 +21,6 @@ namespace egocal::detail {
 
 namespace {
 
-constexpr double radians_a_degree = std::numbers::pi / 180;
 constexpr double metres_a_degree = 111e3;  // of latitude, roughly: directions need no more
 
 }  // namespace
@@ -72,7 +72,7 @@ void TextRecording::find_angle_unit() {
   }
   const AngleUnit::Decision decision = unit_by_rows(unknown).decide();
   if (!decision.degrees) throw unit_of_angles_needed(unknown);
-  if (*decision.degrees) angle_in_si_ = radians_a_degree;
+  if (*decision.degrees) angle_in_si_ = radians_per_degree;
   layout_.notes.push_back(std::string("angles are taken as ") + (*decision.degrees ? "degrees" : "radians") +
                           ", " + decision.reason);
 }
@@ -93,7 +93,7 @@ AngleUnit TextRecording::unit_by_rows(const std::vector<Quantity>& angles) {
     if (const auto east = number(x), north = number(y); east && north)
       position = Eigen::Vector2d(*east, *north) * columns[x].in_si.value_or(1);
     else if (const auto at = number(latitude), along = number(longitude); at && along)
-      position = Eigen::Vector2d(*along * std::cos(*at * radians_a_degree), *at) * metres_a_degree;
+      position = Eigen::Vector2d(*along * std::cos(*at * radians_per_degree), *at) * metres_a_degree;
     for (const Quantity quantity : angles) {
       const std::optional<double> angle = number(quantity);
       if (!angle) continue;
@@ -360,8 +360,8 @@ CheckedPose TextRecording::pose_of_columns(const TextRows& rows) {
     q = {R.w(), R.x(), R.y(), R.z()};
   }
   if (columns.has_geodetic() && !columns.has_position()) {
-    const GeodeticPosition place{value(rows, latitude, radians_a_degree),
-                                 value(rows, longitude, radians_a_degree), value(rows, height)};
+    const GeodeticPosition place{value(rows, latitude, radians_per_degree),
+                                 value(rows, longitude, radians_per_degree), value(rows, height)};
     if (!(std::abs(place.latitude) <= std::numbers::pi / 2 &&
           std::abs(place.longitude) <= 2 * std::numbers::pi))
       throw error_at(file_, line, "latitude, longitude", "expected at most 90 and 360 degrees");

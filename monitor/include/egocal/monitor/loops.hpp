@@ -3,10 +3,10 @@
 #pragma once
 
 #include <array>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "egocal/degrees.hpp"
 #include "egocal/monitor/model.hpp"
 
 namespace egocal::monitor {
@@ -16,8 +16,8 @@ struct LoopOptions {
   /// answers. Their errors are dependent; the sum is an upper bound for any dependence.
   double sigmas = 3;
   /// And these minima, because systematic errors of odometry repeat in every part of a drive (docs/rigs.md).
-  double least_rotation = 0.15 * std::numbers::pi / 180;  ///< [rad]
-  double least_translation = 0.01;                        ///< [m]
+  double least_rotation = 0.15 * radians_per_degree;  ///< [rad]
+  double least_translation = 0.01;                    ///< [m]
 };
 
 /// T_ab T_bc T_ca of the answers that count for three pairs. The identity if they agree.

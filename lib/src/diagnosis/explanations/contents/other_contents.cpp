@@ -19,6 +19,7 @@
 #include "diagnosis/explanations/turning/rates_in_degrees.hpp"
 #include "diagnosis/motions/changed_motions.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 
 namespace egocal::detail {
@@ -80,7 +81,7 @@ Angles exchanged(const Angles& x) {
   return {x[1], x[0], x[2]};
 }
 Angles from_radians(const Angles& x) {
-  return 180 / std::numbers::pi * x;
+  return degrees_per_radian * x;
 }
 Pose yaw_instead_of_roll_first(const Pose& pose) {
   return {from_yaw_first(roll_first(pose.rotation.toRotationMatrix())).normalized(), pose.translation};

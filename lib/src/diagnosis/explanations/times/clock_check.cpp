@@ -3,9 +3,9 @@
 #include "diagnosis/explanations/times/clock_check.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/in_words.hpp"
 #include "egocal/microseconds.hpp"
@@ -136,7 +136,7 @@ std::string rival_in_words(const Finding& rival, const Pose& T_a_b, const Observ
   const double rotation = difference.tail<3>().norm(), translation = difference.head<3>().norm();
   if (!(rotation > options.tolerance_rotation || translation > options.tolerance_translation)) return "";
   return format("%s The answer would be another one, %.3g deg and %s away.", rival.message.c_str(),
-                rotation * 180 / std::numbers::pi,
+                rotation * degrees_per_radian,
                 length_in_words(translation, options.unit == LengthUnit::metres).c_str());
 }
 

@@ -13,6 +13,7 @@
 #include "diagnosis/motions/changed_motions.hpp"
 #include "diagnosis/motions/stillest_point.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "linear_algebra/cross_matrix.hpp"
 #include "linear_algebra/normal_equations.hpp"
@@ -265,7 +266,7 @@ std::optional<Finding> askew_rotations(const Instants& instants, int stride, con
   tuning.tolerance = options.tolerance_rotation;
   const std::optional<Askew> found = askew(instants, stride, answered.T_a_b, options.motions, tuning);
   if (!found) return std::nullopt;
-  const double degrees = found->turn * 180 / std::numbers::pi;
+  const double degrees = found->turn * degrees_per_radian;
   Finding finding;
   finding.code = "odometry";
   std::string claim, cure = "Calibrate the gyroscopes and the axes of both odometries, then record again.";

@@ -6,10 +6,10 @@
 #pragma once
 
 #include <cstddef>
-#include <numbers>
 #include <optional>
 
 #include "diagnosis/motions/motions.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/diagnose.hpp"
 
 namespace egocal::detail {
@@ -31,7 +31,7 @@ struct AskewOptions {
   /// Least turn, as a part of the tolerance: the answer lies between what the two halves of a stream say, so
   /// it may be off by more.
   double least = 0.5;
-  double tolerance = std::numbers::pi / 180;  ///< [rad]; DiagnosisOptions::tolerance_rotation
+  double tolerance = radians_per_degree;  ///< [rad]; DiagnosisOptions::tolerance_rotation
 };
 
 /// A turn that is larger than chance explains.

@@ -5,20 +5,18 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "linear_algebra/cross_matrix.hpp"
 
 namespace egocal::detail {
 
 namespace {
-
-constexpr double in_one_degree = std::numbers::pi / 180;
 
 /// How far a stream turns from row to row, a second [rad/s].
 double turning_rate(const Trajectory& rows) {
@@ -44,7 +42,7 @@ Trajectory in_radians(const Trajectory& rows) {
   Trajectory result = rows;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const Pose step = to_pose(conjugate(rows[i - 1].pose) * rows[i].pose);
-    const Eigen::Vector3d turn = rotation_log(step.rotation), right = in_one_degree * turn;
+    const Eigen::Vector3d turn = rotation_log(step.rotation), right = radians_per_degree * turn;
     const Eigen::Vector3d way = of_screw(turn).inverse() * step.translation;
     result[i].pose = canonical_sign(
         normalized(result[i - 1].pose * to_dual_quaternion({rotation_exp(right), of_screw(right) * way})));
@@ -73,7 +71,7 @@ std::optional<Finding> rates_in_degrees(const Evidence& evidence, const Diagnosi
   if (!explains(here, options) || !better(comparison, rates.gain, options)) return std::nullopt;
   const char* const stream = mark(of_b ? 'b' : 'a');
   Finding finding = finding_of(of_b ? "turning_scale_b" : "turning_scale_a", here, comparison, true);
-  finding.value = 1 / in_one_degree;
+  finding.value = 1 / radians_per_degree;
   say(finding, format("The turning rates of %s are in degrees a second", stream),
       format("Give the turning rates of %s in radians a second.", stream),
       format(": the squared residuals are %.3g times smaller with %s turning by a 57.3th of what it does.",

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "diagnosis/motions/changed_motions.hpp"
 #include "diagnosis/motions/stillest_point.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "linear_algebra/cross_matrix.hpp"
 #include "linear_algebra/normal_equations.hpp"
@@ -170,7 +170,7 @@ Finding worded(const Drifting& drifting) {
       format(
           "The rotations of %s turn away from its positions by %.2g deg each second: the squared residuals "
           "are %.3g times smaller without that.",
-          mark(which), *finding.value * 180 / std::numbers::pi, finding.improvement),
+          mark(which), *finding.value * degrees_per_radian, finding.improvement),
       format("Take off the bias of the gyroscope of %s, or take its rotations and its positions from one "
              "source.",
              mark(which)));

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "diagnosis/motions/changed_motions.hpp"
 #include "diagnosis/motions/stillest_point.hpp"
 #include "diagnosis/words/wording.hpp"
+#include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 
 namespace egocal::detail {
@@ -103,7 +103,6 @@ struct VectorReading {
 
 std::vector<VectorReading> vector_readings(const Instants& instants, const std::vector<std::size_t>& begins,
                                            std::size_t span) {
-  constexpr double radians_a_degree = std::numbers::pi / 180;
   constexpr std::array<Side, 2> sides{Side::b, Side::a};
   // of b and of a, each beginning with a shorter and with a longer vector: one pass over the drive
   std::vector<HalfVectors> halves;
@@ -118,7 +117,7 @@ std::vector<VectorReading> vector_readings(const Instants& instants, const std::
     const Side side = sides[k / 2];
     readings.push_back({side, 2, std::move(halves[k].orientations)});
     if (k % 2 == 0) continue;
-    for (const double factor : {0.5, radians_a_degree})
+    for (const double factor : {0.5, radians_per_degree})
       readings.push_back({side, factor, with_longer_vectors(instants, begins, span, side, factor)});
   }
   return readings;
