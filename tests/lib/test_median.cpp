@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -22,7 +22,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/io/twist_integrator.hpp"
 #include "egocal/simulation/simulation.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::test_other_contents {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "egocal/microseconds.hpp"
-#include "offline/common/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::tools {
 
@@ -15,7 +15,7 @@ DrawnTime::DrawnTime(const Trajectory& a, std::int64_t origin_us, const DrawnTim
   std::vector<std::int64_t> periods;
   periods.reserve(a.size() - 1);
   for (std::size_t i = 1; i < a.size(); ++i) periods.push_back(a[i].time_us - a[i - 1].time_us);
-  const double usual = to_seconds(median_of(std::move(periods)));
+  const double usual = to_seconds(detail::median(std::move(periods)));
   const double least = std::max(options.least_seconds, options.least_periods * usual);
   for (std::size_t i = 1; i < a.size(); ++i) {
     if (!(seconds_between(a[i - 1].time_us, a[i].time_us) > least)) continue;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "egocal/microseconds.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal {
 

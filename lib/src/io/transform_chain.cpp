@@ -6,7 +6,7 @@
 #include <deque>
 #include <map>
 
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

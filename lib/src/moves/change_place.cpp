@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "egocal/statistics/median.hpp"
 #include "moves/linear_blocks.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <utility>
 
+#include "egocal/statistics/median.hpp"
 #include "linear_algebra/small_factor.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "solvers/minimiser.hpp"
 #include "statistics/distributions.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -9,10 +9,10 @@
 #include "egocal/estimation/attenuation.hpp"
 #include "egocal/problem/cost.hpp"
 #include "egocal/solvers/global.hpp"
+#include "egocal/statistics/median.hpp"
 #include "linear_algebra/small_factor.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "solvers/minimiser.hpp"
-#include "statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {

@@ -7,9 +7,9 @@
 
 #include "egocal/microseconds.hpp"
 #include "egocal/moves/find_moves.hpp"
+#include "egocal/statistics/median.hpp"
 #include "moves/linear_blocks.hpp"
 #include "moves/moving_pairs.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal {
 

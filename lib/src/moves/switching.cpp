@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "egocal/microseconds.hpp"
+#include "egocal/statistics/median.hpp"
 #include "linear_algebra/small_factor.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "moves/division.hpp"
 #include "moves/moving_pairs.hpp"
 #include "problem/tangent.hpp"
-#include "statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {

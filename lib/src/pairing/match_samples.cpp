@@ -9,7 +9,7 @@
 #include <string>
 
 #include "egocal/error.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal {
 

@@ -9,9 +9,9 @@
 #include <span>
 #include <utility>
 
+#include "egocal/statistics/median.hpp"
 #include "pairing/cut_alike.hpp"
 #include "pairing/smooth_interpolation.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal {
 

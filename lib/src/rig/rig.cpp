@@ -10,12 +10,12 @@
 #include <utility>
 
 #include "egocal/error.hpp"
+#include "egocal/statistics/median.hpp"
 #include "moves/linear_blocks.hpp"
 #include "problem/without_part.hpp"
 #include "rig/joint.hpp"
 #include "rig/loops.hpp"
 #include "solvers/minimiser.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal {
 

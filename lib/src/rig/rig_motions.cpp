@@ -9,8 +9,8 @@
 
 #include "egocal/microseconds.hpp"
 #include "egocal/pairing/congruence.hpp"
+#include "egocal/statistics/median.hpp"
 #include "pairing/smooth_interpolation.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal {
 

@@ -8,8 +8,8 @@
 #include <limits>
 #include <optional>
 
+#include "egocal/statistics/median.hpp"
 #include "statistics/distributions.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "egocal/statistics/median.hpp"
 #include "samples/adding_samples.hpp"
 #include "samples/half_turns.hpp"
 #include "samples/trimmed_search.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -16,6 +16,7 @@
 #include "diagnosis/words/wording.hpp"
 #include "egocal/error.hpp"
 #include "egocal/in_words.hpp"
+#include "egocal/statistics/median.hpp"
 #include "egocal/uncertainty/observability.hpp"
 #include "samples/agreeing.hpp"
 #include "samples/both_lists.hpp"
@@ -24,7 +25,6 @@
 #include "samples/leave_one_out.hpp"
 #include "samples/readings.hpp"
 #include "samples/slip.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal {
 

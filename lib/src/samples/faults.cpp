@@ -9,7 +9,7 @@
 #include "diagnosis/words/wording.hpp"
 #include "egocal/degrees.hpp"
 #include "egocal/in_words.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -10,9 +10,9 @@
 #include "egocal/microseconds.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/scale/interpolation_loss.hpp"
+#include "egocal/statistics/median.hpp"
 #include "scale/kept_motions.hpp"
 #include "scale/unjudged_motions.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "egocal/scale/estimate_scale.hpp"
+#include "egocal/statistics/median.hpp"
 #include "scale/scale_segments.hpp"
 #include "scale/unjudged_motions.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal {
 

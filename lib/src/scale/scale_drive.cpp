@@ -8,9 +8,9 @@
 
 #include "egocal/limits.hpp"
 #include "egocal/microseconds.hpp"
+#include "egocal/statistics/median.hpp"
 #include "scale/kept_motions.hpp"
 #include "scale/unjudged_motions.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal {
 

@@ -18,7 +18,7 @@
 #include "egocal/in_words.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
-#include "offline/common/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::tools {
 
@@ -81,7 +81,7 @@ Drives::Repeated Drives::repeated(const Trajectory& trajectory, std::size_t driv
   }
   if (shifts.empty()) return {};
   const double part = static_cast<double>(shifts.size()) / static_cast<double>(places.size());
-  return {part, median_of(std::move(shifts))};
+  return {part, detail::median(std::move(shifts))};
 }
 
 bool Drives::is_repeated(const std::vector<Trajectory>& drive, const std::vector<std::string>& names,

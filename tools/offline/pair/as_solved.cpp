@@ -9,7 +9,7 @@
 #include "egocal/limits.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/pairing/motion_pairing.hpp"
-#include "offline/common/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::tools {
 
@@ -21,7 +21,7 @@ double period_of(const Trajectory& trajectory) {
   steps.reserve(trajectory.size());
   for (std::size_t i = 1; i < trajectory.size(); ++i)
     steps.push_back(to_seconds(trajectory[i].time_us - trajectory[i - 1].time_us));
-  return median_of(std::move(steps));
+  return detail::median(std::move(steps));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "egocal/online/answer.hpp"
-#include "offline/common/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::tools {
 
@@ -24,7 +24,7 @@ double median_us(const std::function<double()>& measure_us) {
   const auto begin = Clock::now();
   while (times.size() < 5 || (times.size() < 201 && Clock::now() - begin < std::chrono::milliseconds(100)))
     times.push_back(measure_us());
-  return median_of(std::move(times));
+  return detail::median(std::move(times));
 }
 
 double time_of_method(Method method, const Problem& problem) {

@@ -9,7 +9,7 @@
 
 #include "diagnosis/motions/robust_fit.hpp"
 #include "egocal/solvers/global.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {

@@ -10,11 +10,11 @@
 
 #include "diagnosis/motions/reading.hpp"
 #include "diagnosis/motions/robust_fit.hpp"
+#include "egocal/statistics/median.hpp"
 #include "linear_algebra/cross_matrix.hpp"
 #include "linear_algebra/normal_equations.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "problem/tangent.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -8,7 +8,7 @@
 
 #include "diagnosis/motions/robust_fit.hpp"
 #include "egocal/microseconds.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -11,9 +11,9 @@
 
 #include "diagnosis/motions/robust_fit.hpp"
 #include "egocal/microseconds.hpp"
+#include "egocal/statistics/median.hpp"
 #include "pairing/cut_alike.hpp"
 #include "pairing/smooth_interpolation.hpp"
-#include "statistics/median.hpp"
 #include "statistics/quantile.hpp"
 
 namespace egocal::detail {

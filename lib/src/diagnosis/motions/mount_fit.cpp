@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "egocal/statistics/median.hpp"
 #include "linear_algebra/normal_equations.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal::detail {
 

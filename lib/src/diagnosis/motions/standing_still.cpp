@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "diagnosis/motions/robust_fit.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

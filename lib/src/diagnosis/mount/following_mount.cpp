@@ -10,8 +10,8 @@
 #include "diagnosis/words/wording.hpp"
 #include "egocal/degrees.hpp"
 #include "egocal/geometry/pose.hpp"
+#include "egocal/statistics/median.hpp"
 #include "linear_algebra/normal_equations.hpp"
-#include "statistics/median.hpp"
 #include "statistics/quantile.hpp"
 
 namespace egocal::detail {

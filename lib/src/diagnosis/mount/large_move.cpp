@@ -11,7 +11,7 @@
 #include "diagnosis/mount/division.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/degrees.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {

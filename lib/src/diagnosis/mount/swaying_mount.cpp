@@ -12,7 +12,7 @@
 #include "diagnosis/words/wording.hpp"
 #include "egocal/degrees.hpp"
 #include "egocal/geometry/pose.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

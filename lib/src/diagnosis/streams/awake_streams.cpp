@@ -10,7 +10,7 @@
 
 #include "diagnosis/streams/step_size.hpp"
 #include "egocal/microseconds.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -10,7 +10,7 @@
 #include "diagnosis/motions/standing_still.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/degrees.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 #include "statistics/quantile.hpp"
 
 namespace egocal::detail {

@@ -10,7 +10,7 @@
 #include "diagnosis/motions/standing_still.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/certain_of_either.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -10,7 +10,7 @@
 
 #include "diagnosis/motions/reading.hpp"
 #include "egocal/geometry/dual_quaternion.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -11,7 +11,7 @@
 
 #include "diagnosis/motions/motions.hpp"
 #include "diagnosis/streams/timed_poses.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

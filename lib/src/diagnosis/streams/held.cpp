@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "egocal/microseconds.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

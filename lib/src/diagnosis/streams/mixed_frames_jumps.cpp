@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "diagnosis/words/wording.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

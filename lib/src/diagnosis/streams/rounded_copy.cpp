@@ -11,7 +11,7 @@
 #include "diagnosis/motions/robust_fit.hpp"
 #include "diagnosis/streams/written_digits.hpp"
 #include "diagnosis/words/wording.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -9,7 +9,7 @@
 
 #include "diagnosis/motions/robust_fit.hpp"
 #include "diagnosis/motions/standing_still.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 #include "statistics/quantile.hpp"
 
 namespace egocal::detail {

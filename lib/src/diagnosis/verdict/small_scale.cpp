@@ -18,9 +18,9 @@
 #include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "egocal/directions.hpp"
+#include "egocal/statistics/median.hpp"
 #include "scale/joint_jackknife.hpp"
 #include "statistics/distributions.hpp"
-#include "statistics/median.hpp"
 #include "uncertainty/frame_a.hpp"
 
 namespace egocal::detail {

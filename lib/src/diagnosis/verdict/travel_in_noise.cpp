@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "diagnosis/motions/robust_fit.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

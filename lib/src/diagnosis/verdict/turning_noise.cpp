@@ -10,7 +10,7 @@
 
 #include "diagnosis/motions/changed_motions.hpp"
 #include "diagnosis/motions/robust_fit.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

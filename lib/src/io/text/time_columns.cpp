@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "egocal/statistics/median.hpp"
 #include "io/text/named_columns.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal::detail {
 

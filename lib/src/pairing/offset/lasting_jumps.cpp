@@ -8,7 +8,7 @@
 
 #include "egocal/geometry/pose.hpp"
 #include "egocal/motions/instant.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "egocal/microseconds.hpp"
+#include "egocal/statistics/median.hpp"
 #include "pairing/offset/line_fit.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -11,10 +11,10 @@
 #include "egocal/microseconds.hpp"
 #include "egocal/motions/instant.hpp"
 #include "egocal/solvers/global.hpp"
+#include "egocal/statistics/median.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "pairing/offset/pose_at.hpp"
 #include "pairing/offset/turning.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -9,7 +9,7 @@
 
 #include "egocal/geometry/pose.hpp"
 #include "egocal/limits.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "diagnosis/motions/stillest_point.hpp"
-#include "statistics/median.hpp"
+#include "egocal/statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -12,8 +12,8 @@
 #include "diagnosis/motions/robust_fit.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
+#include "egocal/statistics/median.hpp"
 #include "pairing/offset/pose_at.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal::detail {
 

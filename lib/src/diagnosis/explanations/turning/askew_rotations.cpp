@@ -15,11 +15,11 @@
 #include "diagnosis/words/wording.hpp"
 #include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
+#include "egocal/statistics/median.hpp"
 #include "linear_algebra/cross_matrix.hpp"
 #include "linear_algebra/normal_equations.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
 #include "statistics/distributions.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -18,10 +18,10 @@
 #include "diagnosis/words/wording.hpp"
 #include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
+#include "egocal/statistics/median.hpp"
 #include "linear_algebra/cross_matrix.hpp"
 #include "linear_algebra/normal_equations.hpp"
 #include "problem/tangent.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal::detail {
 

@@ -18,8 +18,8 @@
 #include "diagnosis/motions/stillest_point.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
+#include "egocal/statistics/median.hpp"
 #include "linear_algebra/symmetric_eigen.hpp"
-#include "statistics/median.hpp"
 
 namespace egocal::detail {
 
