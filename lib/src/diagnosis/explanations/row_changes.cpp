@@ -110,12 +110,7 @@ bool is_expected(double fitted, double expected, double stddev, double near, dou
 
 Explained with_changes(const Explained& given, const Changes& changes, Side side,
                        const DiagnosisOptions& options) {
-  Explained result{given.motions, {}};
-  for (std::size_t i = 0; i < result.motions.all.size(); ++i) {
-    Motion& motion = result.motions.all[i];
-    set_motion(motion, side, to_pose(side == Side::a ? motion.a : motion.b).rotation,
-               (side == Side::a ? motion.t_a : motion.t_b) + changes[i]);
-  }
+  Explained result{with_added(given.motions, changes, side), {}};
   result.fit = robust_fit(result.motions, options.fit);
   return result;
 }

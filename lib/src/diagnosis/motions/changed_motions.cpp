@@ -23,6 +23,15 @@ void set_motion(Motion& motion, Side side, const Rotation& rotation, const Eigen
   (side == Side::a ? motion.a : motion.b) = canonical_sign(to_dual_quaternion(Pose{rotation, translation}));
 }
 
+Motions with_added(Motions motions, const std::vector<Eigen::Vector3d>& added, Side side) {
+  for (std::size_t i = 0; i < motions.all.size(); ++i) {
+    Motion& motion = motions.all[i];
+    set_motion(motion, side, to_pose(side == Side::a ? motion.a : motion.b).rotation,
+               (side == Side::a ? motion.t_a : motion.t_b) + added[i]);
+  }
+  return motions;
+}
+
 void set_turned_motion(Motion& motion, Side side, const Rotation& rotation,
                        const Eigen::Vector3d& translation) {
   set_motion(motion, side, rotation, translation);

@@ -3,6 +3,7 @@
 // Motions of which one stream is changed by a few numbers: what a mistake in it adds to each translation.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <vector>
 
@@ -17,6 +18,10 @@ std::vector<std::size_t> begins_of(const Instants& instants, const Motions& moti
 
 /// Sets the motion of one stream, in the frame of its begin [m].
 void set_motion(Motion& motion, Side side, const Rotation& rotation, const Eigen::Vector3d& translation);
+
+/// The motions where this is added to the translations of one stream, in the frame of each begin [m]. Their
+/// typical sizes stay those of the motions as given.
+Motions with_added(Motions motions, const std::vector<Eigen::Vector3d>& added, Side side);
 
 /// Sets the motion of one stream where it also turns by another angle.
 void set_turned_motion(Motion& motion, Side side, const Rotation& rotation,

@@ -42,15 +42,12 @@ ByLeverArm by_lever_arm(const Instants& instants, const Motions& motions) {
   return result;
 }
 
-/// The motions without a lever arm in one stream.
-Motions without(const Motions& given, const std::vector<Matrix3d>& added, Side side, const Vector3d& lever) {
-  Motions motions = given;
-  for (std::size_t i = 0; i < motions.all.size(); ++i) {
-    Motion& motion = motions.all[i];
-    set_motion(motion, side, to_pose(side == Side::a ? motion.a : motion.b).rotation,
-               (side == Side::a ? motion.t_a : motion.t_b) - added[i] * lever);
-  }
-  return motions;
+/// What each motion gains where the lever arm is taken out of its stream.
+std::vector<Vector3d> without(const std::vector<Matrix3d>& added, const Vector3d& lever) {
+  std::vector<Vector3d> changes;
+  changes.reserve(added.size());
+  for (const Matrix3d& one : added) changes.emplace_back(-(one * lever));
+  return changes;
 }
 
 struct Lever {
@@ -65,7 +62,7 @@ Lever fitted(const Explained& given, const std::vector<Matrix3d>& added, Side si
   Lever lever{side, Vector3d::Zero(), given, {}};
   for (int round = 0; round < options.fit.rounds; ++round) {
     lever.arm -= best_numbers<3>(lever.explained, added, side);
-    lever.explained.motions = without(given.motions, added, side, lever.arm);
+    lever.explained.motions = with_added(given.motions, without(added, lever.arm), side);
     lever.explained.fit = robust_fit(lever.explained.motions, options.fit);
   }
   lever.comparison = compare(given, lever.explained);

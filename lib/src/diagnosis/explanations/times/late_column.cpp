@@ -101,12 +101,9 @@ std::optional<LateColumn> fitted_column(const Instants& instants, const Explaine
   for (int round = 0; round < options.fit.rounds; ++round) {
     found.delay += best_numbers<1>(found.explained, of_one, side)[0];
     if (!(std::abs(found.delay) <= late.most)) return std::nullopt;
-    found.explained.motions = given.motions;
-    for (std::size_t i = 0; i < of_one.size(); ++i) {
-      Motion& motion = found.explained.motions.all[i];
-      set_motion(motion, side, to_pose(side == Side::a ? motion.a : motion.b).rotation,
-                 (side == Side::a ? motion.t_a : motion.t_b) + found.delay * of_one[i]);
-    }
+    std::vector<Vector3d> moved = of_one;
+    for (Vector3d& one : moved) one *= found.delay;
+    found.explained.motions = with_added(given.motions, moved, side);
     found.explained.fit = robust_fit(found.explained.motions, options.fit);
   }
   found.comparison = compare(given, found.explained);

@@ -70,17 +70,6 @@ OfDelay of_delay(const Instants& instants, const Motions& motions, const std::ve
   return result;
 }
 
-/// The motions with the positions of one stream taken at other times.
-Motions later(const Motions& given, const Changes& added, Side side) {
-  Motions motions = given;
-  for (std::size_t i = 0; i < motions.all.size(); ++i) {
-    Motion& motion = motions.all[i];
-    set_motion(motion, side, to_pose(side == Side::a ? motion.a : motion.b).rotation,
-               (side == Side::a ? motion.t_a : motion.t_b) + added[i]);
-  }
-  return motions;
-}
-
 LatePositions fitted(const Instants& instants, const Explained& given, const std::vector<std::size_t>& begins,
                      Side side, const DiagnosisOptions& options, const LatePositionsOptions& tuning) {
   LatePositions late{side, 0, given, {}};
@@ -89,7 +78,7 @@ LatePositions fitted(const Instants& instants, const Explained& given, const std
     late.delay += best_numbers<1>(late.explained, here.of_a_second, side)[0];
     if (!std::isfinite(late.delay)) break;
     here = of_delay(instants, given.motions, begins, side, late.delay, tuning);
-    late.explained.motions = later(given.motions, here.added, side);
+    late.explained.motions = with_added(given.motions, here.added, side);
     late.explained.fit = robust_fit(late.explained.motions, options.fit);
   }
   late.comparison = compare(given, late.explained);
