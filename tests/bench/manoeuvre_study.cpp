@@ -19,8 +19,8 @@
 #include "egocal/error.hpp"
 #include "egocal/io/whole_file.hpp"
 #include "egocal/online/answer.hpp"
+#include "egocal/random.hpp"
 #include "markdown_tables.hpp"
-#include "simulation/random.hpp"
 #include "support/simulated_drive.hpp"
 #include "uncertainty/frame_a.hpp"
 
@@ -216,7 +216,7 @@ class Rig {
   }
 
   Kind kind_;
-  detail::Random random_;
+  Random random_;
   MotionPairing pairing_;
   std::vector<Pose> usual_;
   std::size_t next_ = 0, count_ = 0;

@@ -9,7 +9,7 @@
 
 #include "../support/simulated_drive.hpp"
 #include "egocal/calibrate.hpp"
-#include "simulation/random.hpp"
+#include "egocal/random.hpp"
 
 namespace egocal::test_goal {
 namespace {
@@ -70,7 +70,7 @@ TEST(Goal, WhereNoManoeuvreIsMuchFasterTheAdviceIsToGoOn) {
 /// not add up: a motion says little, and the many motions of a second say more than one.
 Calibration after_a_motorway(std::uint64_t seed, double seconds_of_eights) {
   constexpr double period = 0.1;
-  detail::Random random(seed);
+  Random random(seed);
   testing::Streams streams;
   Pose vehicle, drifting;
   const auto wave = [&](double t, double seconds) {

@@ -8,37 +8,11 @@
 #include <vector>
 
 #include "egocal/problem/cost.hpp"
+#include "egocal/random.hpp"
 
 namespace egocal::testing {
 
-/// The same numbers on every machine (SplitMix64; the standard's distributions differ between libraries).
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-
-  std::uint64_t bits() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return z ^ (z >> 31);
-  }
-  double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }  ///< [0, 1)
-  double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  double log_uniform(double low, double high) { return low * std::pow(high / low, uniform()); }
-  std::uint64_t below(std::uint64_t n) { return bits() % n; }
-  double normal() {
-    const double radius = std::sqrt(-2 * std::log(1 - uniform()));
-    return radius * std::cos(2 * std::numbers::pi * uniform());
-  }
-  Eigen::Vector3d normal3(double sigma = 1) {
-    const double x = normal(), y = normal(), z = normal();
-    return sigma * Eigen::Vector3d(x, y, z);
-  }
-  Eigen::Vector3d direction() { return normal3().normalized(); }
-
- private:
-  std::uint64_t state_;
-};
+using egocal::Random;
 
 /// Rotation vector [rad] and translation [m] to a displacement.
 inline DualQuaternion displacement(const Eigen::Vector3d& rotation, const Eigen::Vector3d& translation) {

@@ -2,42 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/noisy_drive.hpp"
 
-#include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "egocal/random.hpp"
 #include "egocal/simulation/simulation.hpp"
 
 namespace egocal::tools {
-
-namespace {
-
-/// SplitMix64 and Box-Muller: the standard's distributions give other numbers in every library.
-class Numbers {
- public:
-  explicit Numbers(std::uint64_t seed) : state_(seed) {}
-
-  std::uint64_t bits() {
-    std::uint64_t z = state_ += 0x9e3779b97f4a7c15;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
-    z = (z ^ z >> 27) * 0x94d049bb133111eb;
-    return z ^ z >> 31;
-  }
-  double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
-  double normal() {
-    const double radius = std::sqrt(-2 * std::log(1 - uniform()));
-    return radius * std::cos(2 * std::numbers::pi * uniform());
-  }
-  Eigen::Vector3d normal3(double deviation) {
-    const double x = normal(), y = normal(), z = normal();
-    return deviation * Eigen::Vector3d(x, y, z);
-  }
-
- private:
-  std::uint64_t state_;
-};
-
-}  // namespace
 
 NoisyDrive::NoisyDrive(const DriveOptions& options, const Pose& T_a_b) {
   SimulationOptions simulation;
@@ -60,10 +30,10 @@ NoisyDrive::NoisyDrive(const DriveOptions& options, const Pose& T_a_b) {
 }
 
 std::vector<MotionPair> NoisyDrive::run(double relative_noise, bool mixed, std::uint64_t seed) const {
-  Numbers random(seed);
+  Random random(seed);
   std::vector<MotionPair> pairs = pairs_;
   if (mixed)
-    for (MotionPair& pair : pairs) pair = pairs_[random.bits() % pairs_.size()];
+    for (MotionPair& pair : pairs) pair = pairs_[random.below(pairs_.size())];
   const auto add_noise = [&](DualQuaternion& motion, const Mean& mean) {
     const Eigen::Vector3d turn = random.normal3(relative_noise * mean.rotation);
     const Eigen::Vector3d shift = random.normal3(relative_noise * mean.translation);

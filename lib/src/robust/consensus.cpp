@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "robust/consensus_search.hpp"
+#include "statistics/draws.hpp"
 
 namespace egocal {
 
@@ -32,15 +33,11 @@ void fit_pieces(const ConsensusSearch& search, std::size_t pieces, std::vector<C
 /// every direction), and of four parts (what is wrong may be everywhere).
 void fit_draws(const ConsensusSearch& search, const ConsensusOptions& options, std::vector<Candidate>& fits) {
   const std::size_t n = search.size();
-  std::uint64_t drawn = 1;
-  const auto draw = [&](std::size_t below) {
-    drawn = 6364136223846793005u * drawn + 1442695040888963407u;  // Knuth's: the same draws every time
-    return static_cast<std::size_t>((drawn >> 33) % below);
-  };
+  detail::Draws draws;
   for (std::size_t i = 0; i < options.draws_of_pieces; ++i) {
     std::vector<double> factors(n, 0.0);
     for (int piece = 0; piece < 3; ++piece) {
-      const std::size_t k = draw(16);
+      const std::size_t k = draws.below(16);
       const std::vector<double> more = only(n, k * n / 16, (k + 1) * n / 16);
       for (std::size_t part = 0; part < n; ++part) factors[part] = std::max(factors[part], more[part]);
     }
@@ -48,7 +45,7 @@ void fit_draws(const ConsensusSearch& search, const ConsensusOptions& options, s
   }
   for (std::size_t i = 0; i < options.draws_of_parts; ++i) {
     std::vector<double> factors(n, 0.0);
-    for (int part = 0; part < 4; ++part) factors[draw(n)] = 1;
+    for (int part = 0; part < 4; ++part) factors[draws.below(n)] = 1;
     fits.push_back(search.fit(factors));
   }
 }

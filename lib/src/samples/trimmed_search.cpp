@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "samples/half_turns.hpp"
+#include "statistics/draws.hpp"
 
 namespace egocal::detail {
 
@@ -89,14 +90,10 @@ std::vector<Indices> TrimmedSearch::starts() const {
           if (set_.units_among(Indices{i, j, k}) == 3) starts.push_back({i, j, k});
     return starts;
   }
-  std::uint64_t drawn = 1;
-  const auto draw_of = [&](std::size_t count) {
-    drawn = 6364136223846793005u * drawn + 1442695040888963407u;  // Knuth's: the same draws every time
-    return static_cast<std::size_t>((drawn >> 33) % count);
-  };
+  detail::Draws draws;
   const auto draw = [&] {
-    const Indices& unit = members_[draw_of(members_.size())];
-    return unit.size() == 1 ? unit[0] : unit[draw_of(unit.size())];
+    const Indices& unit = members_[draws.below(members_.size())];
+    return unit.size() == 1 ? unit[0] : unit[draws.below(unit.size())];
   };
   while (starts.size() <= static_cast<std::size_t>(options_.starts)) {
     Indices triple{draw(), draw(), draw()};

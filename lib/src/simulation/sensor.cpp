@@ -15,7 +15,6 @@ namespace egocal {
 namespace {
 
 using detail::Path;
-using detail::Random;
 
 constexpr std::int64_t epoch_us =
     1'700'000'000'000'000;  // a plausible date: times of zero are refused on the wire

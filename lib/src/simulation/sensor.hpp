@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "egocal/random.hpp"
 #include "egocal/simulation/simulation.hpp"
-#include "simulation/random.hpp"
 
 namespace egocal::detail {
 

@@ -13,7 +13,7 @@
 #include "egocal/error.hpp"
 #include "egocal/limits.hpp"
 #include "egocal/microseconds.hpp"
-#include "simulation/random.hpp"
+#include "egocal/random.hpp"
 #include "simulation/sensor.hpp"
 
 namespace egocal {
@@ -23,7 +23,7 @@ namespace {
 /// A sum of sinusoids with an amplitude of about one.
 class Mixture {
  public:
-  Mixture(detail::Random& random, double shortest, double longest) {
+  Mixture(Random& random, double shortest, double longest) {
     for (Wave& wave : waves_) {
       wave.frequency = 2 * std::numbers::pi / random.uniform(shortest, longest);
       wave.phase = random.uniform(0, 2 * std::numbers::pi);
@@ -49,10 +49,10 @@ class Mixture {
 
 /// Poses of a vehicle (x forward, y left, z up) that follows a winding path on a surface.
 std::vector<Pose> ground_path(const SimulationOptions& options, const std::vector<double>& times,
-                              detail::Random& random) {
+                              Random& random) {
   const Mixture curvature(random, 60, 300);  // over the length of the path [m]
   const Mixture along_x(random, 12, 40), along_y(random, 12, 40);
-  detail::Random of_speed(options.seed ^ 0xd6e8feb86659fd93ULL);
+  Random of_speed(options.seed ^ 0xd6e8feb86659fd93ULL);
   const Mixture pace(of_speed, 10, 60);  // over the time [s]
   const double amplitude = options.terrain == Terrain::rough ? options.roughness : 0;
   constexpr double sharpest_turn = 0.04;  // [1/m]
@@ -85,7 +85,7 @@ std::vector<Pose> ground_path(const SimulationOptions& options, const std::vecto
 
 /// Turns and moves in all directions.
 std::vector<Pose> free_path(const SimulationOptions& options, const std::vector<double>& times,
-                            detail::Random& random) {
+                            Random& random) {
   std::vector<Mixture> turn, move;
   for (int i = 0; i < 3; ++i) {
     turn.emplace_back(random, 1.5, 6.0);  // [s]
@@ -159,7 +159,7 @@ void check(const SimulationOptions& options) {
 
 std::vector<Trajectory> simulate(const SimulationOptions& options) {
   check(options);
-  detail::Random random(options.seed);
+  Random random(options.seed);
   detail::Path path;
   for (int i = 0; i < options.poses; ++i) {
     path.stamps.push_back(std::llround(second_us * i / options.rate));
