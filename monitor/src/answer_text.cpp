@@ -71,7 +71,7 @@ std::string missing_directions(const PairState& pair) {
 }
 
 std::string latency(const calibration_t& answer, Charset charset) {
-  return answer.latency_us < 0 ? "-" : duration(static_cast<double>(answer.latency_us) * 1e-6, charset);
+  return answer.latency_us < 0 ? "-" : duration(to_seconds(answer.latency_us), charset);
 }
 std::string solve_time(const calibration_t& answer, Charset charset) {
   return duration(static_cast<double>(answer.solve_ns) * 1e-9, charset);

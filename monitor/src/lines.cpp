@@ -10,6 +10,7 @@
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/diagnosis_json.hpp"
 #include "egocal/geometry/pose.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/monitor/loops.hpp"
 
 namespace egocal::monitor {
@@ -164,8 +165,7 @@ std::string pair_lines(const Model& model, Charset charset) {
     text += ", gap " + compact(answer->scaled_gap, charset) + " of 1, solve " +
             duration(static_cast<double>(answer->solve_ns) * 1e-9, charset) + " verify " +
             duration(static_cast<double>(answer->verify_ns) * 1e-9, charset);
-    if (answer->latency_us >= 0)
-      text += " end to end " + duration(static_cast<double>(answer->latency_us) * 1e-6, charset);
+    if (answer->latency_us >= 0) text += " end to end " + duration(to_seconds(answer->latency_us), charset);
     if (pair.scale) text += ", scale " + scale_text(*pair.scale, charset).text;
     if (const std::string& hint = pair.shown.observability.hint; !hint.empty())
       text += ", hint: " + clean(hint, 120);

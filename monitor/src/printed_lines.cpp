@@ -13,6 +13,7 @@
 
 #include "egocal/bus/loop.hpp"
 #include "egocal/error.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/monitor/lines.hpp"
 #include "first_view.hpp"
 
@@ -56,7 +57,7 @@ int run_once(const ProgramOptions& options, Model& model, Source& source, Charse
   for (;;) {
     now = source.advance();
     model.tick(now);
-    const double waited = static_cast<double>(bus::mono_us() - begin) * 1e-6;
+    const double waited = to_seconds(bus::mono_us() - begin);
     if (stop_flag || source.at_end()) break;
     const bool answered =
         !model.pairs().empty() && std::all_of(model.pairs().begin(), model.pairs().end(),

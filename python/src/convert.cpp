@@ -16,6 +16,7 @@
 #include "egocal/io/recording.hpp"
 #include "egocal/io/trajectory_file.hpp"
 #include "egocal/limits.hpp"
+#include "egocal/microseconds.hpp"
 #include "python_words.hpp"
 
 namespace egocal::python {
@@ -35,11 +36,11 @@ std::string text(const char* format, double value) {
   return buffer;
 }
 
-std::int64_t to_microseconds(double seconds, const char* name, py::ssize_t row) {
+std::int64_t to_time_us(double seconds, const char* name, py::ssize_t row) {
   // a larger double cannot hold microseconds, and differences of larger times could overflow
   if (!std::isfinite(seconds) || std::abs(seconds) > 9e9)
     refuse(name, "row " + std::to_string(row) + ": expected a time in seconds, got " + text("%.4g", seconds));
-  return std::llround(seconds * 1e6);
+  return to_microseconds(seconds);
 }
 
 /// Refuses times of four bytes, which hold a date to two minutes only. times: the first column.
@@ -75,7 +76,7 @@ Trajectory from_rows(const Array& rows, const char* name, std::vector<std::strin
     const detail::CheckedPose checked =
         detail::checked_pose({at(i, 1), at(i, 2), at(i, 3)}, {at(i, 7), at(i, 4), at(i, 5), at(i, 6)});
     if (!checked.reason.empty()) refuse(name, "row " + std::to_string(i) + ": not a pose: " + checked.reason);
-    trajectory.push_back({to_microseconds(at(i, 0), name, i), checked.pose});
+    trajectory.push_back({to_time_us(at(i, 0), name, i), checked.pose});
   }
   return in_order(std::move(trajectory), name, notes);
 }
@@ -91,7 +92,7 @@ Trajectory from_matrices(const Array& times, const Array& matrices, const char* 
     Eigen::Matrix4d matrix;
     for (int row = 0; row < 4; ++row)
       for (int column = 0; column < 4; ++column) matrix(row, column) = at(i, row, column);
-    trajectory.push_back({to_microseconds(times.at(i), name, i),
+    trajectory.push_back({to_time_us(times.at(i), name, i),
                           to_dual_quaternion(to_pose(matrix, name, static_cast<std::size_t>(i)))});
   }
   return in_order(std::move(trajectory), name, notes);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "egocal/cli/cli.hpp"
+#include "egocal/microseconds.hpp"
 #include "player/player.hpp"
 #include "program/program.hpp"
 
@@ -22,7 +23,7 @@ int main(int argc, char** argv) {
              "Exit codes: 0 played or ended by a signal, 1 failure, 2 wrong usage.");
   services::PlayerOptions options;
   services::BusOptions on_bus{{}, {}, description.name, false};
-  double end = -1, wait_for_pairing = 1e-6 * static_cast<double>(options.pace.wait_for_pairing_us);
+  double end = -1, wait_for_pairing = to_seconds(options.pace.wait_for_pairing_us);
   app.add_option("LOG", options.log, "the log, as lcm-logger or egocal wrote it").required();
   app.add_option("--rig", on_bus.rig_file, "rig file, for its LCM URL");
   app.add_option("--lcm-url", on_bus.url, "LCM URL instead of the rig's");
@@ -44,7 +45,7 @@ int main(int argc, char** argv) {
                  "regular expression: only these channels; default: all but EGOCAL_*");
   if (const auto code = app.parse(argc, argv)) return *code;
   if (end >= 0) options.range.end = end;
-  options.pace.wait_for_pairing_us = static_cast<std::int64_t>(1e6 * wait_for_pairing);
+  options.pace.wait_for_pairing_us = to_microseconds(wait_for_pairing);
   return services::run_on_bus(description, on_bus, [&](auto& loop, auto& heartbeat, const auto&) {
     services::Player player(loop, heartbeat, options);
     loop.run();

@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 #include "egocal/certificate/certificate.hpp"
 #include "egocal/degrees.hpp"
+#include "egocal/microseconds.hpp"
 #include "egocal/problem/blocks.hpp"
 #include "egocal/problem/problem.hpp"
 
@@ -69,7 +69,7 @@ std::vector<OnlinePoint> online_experiment(const DataSet& data, Mode mode, std::
     if (state.last) point.scaled_gap_before = gap_at(problem, *state.last);
     state = step.state;
     point.frame = static_cast<int>(i) + 1;
-    point.time = static_cast<double>(pairs[i].end_us - pairs.front().begin_us) * 1e-6;
+    point.time = to_seconds(pairs[i].end_us - pairs.front().begin_us);
     if (data.truth) point.error = extrinsic_error(*data.truth, step.answer.T_a_b);
     point.scaled_gap = step.fast_certificate.value_or(step.answer.certificate).scaled_gap;
     point.certified = step.answer.certificate.optimality == Optimality::certified;

@@ -9,6 +9,7 @@
 
 #include "egocal/bus/log_file.hpp"
 #include "egocal/bus/rig.hpp"
+#include "egocal/microseconds.hpp"
 
 namespace egocal::tools {
 
@@ -23,7 +24,7 @@ class PoseCounts {
   /// either end.
   std::int64_t between(std::int64_t from_us, std::int64_t to_us) const;
   /// The mean time between two poses, where the stream has no gap [s].
-  double period() const { return steps_ > 0 ? 1e-6 * static_cast<double>(stepped_us_ / steps_) : 0; }
+  double period() const { return steps_ > 0 ? to_seconds(stepped_us_ / steps_) : 0; }
 
  private:
   struct Tenth {

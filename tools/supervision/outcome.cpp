@@ -128,7 +128,7 @@ Hole hole_in(const bus::Rig& rig, const bus::PairConfig& config, const LogExtent
   const auto into_log = [&](std::int64_t time_us) { return to_seconds(time_us - a->second.first_us); };
   for (std::size_t i = 1; i < passed.size(); ++i) {
     const Answers::Passed &from = passed[i - 1], &to = passed[i];
-    const std::int64_t shift_us = std::llround(1e6 * to.time_offset);
+    const std::int64_t shift_us = to_microseconds(to.time_offset);
     const std::int64_t of_a = a->second.poses.between(from.utime, to.utime),
                        of_b = b->second.poses.between(from.utime - shift_us, to.utime - shift_us),
                        in_log = std::min(of_a, of_b);

@@ -45,7 +45,7 @@ Alignment align(const Trajectory& a, const Trajectory& b, const Pose& T_a_b, dou
                 const AlignmentOptions& options) {
   Alignment alignment;
   const DualQuaternion T_b_a = to_dual_quaternion(inverse(T_a_b));
-  const std::int64_t offset_us = std::llround(time_offset * 1e6);
+  const std::int64_t offset_us = to_microseconds(time_offset);
   alignment.b_as_a.reserve(b.size());
   for (const StampedPose& pose : b)
     alignment.b_as_a.push_back({pose.time_us + offset_us, normalized(pose.pose * T_b_a)});

@@ -20,9 +20,7 @@ using Pairs = std::span<const MotionPair>;
 /// The motions between the moves before and after number k; other motions would count as noise. Times of
 /// moves are counted from origin_us.
 Pairs between_neighbours(Pairs pairs, std::span<const Move> moves, std::size_t k, std::int64_t origin_us) {
-  const auto at = [&](const Move& move) {
-    return origin_us + static_cast<std::int64_t>(second_us * move.time);
-  };
+  const auto at = [&](const Move& move) { return origin_us + to_microseconds(move.time); };
   std::size_t from = 0, to = pairs.size();
   if (k > 0 && moves[k - 1].kind == MoveKind::bump)
     while (from < to && pairs[from].begin_us < at(moves[k - 1])) ++from;
@@ -34,7 +32,7 @@ Pairs between_neighbours(Pairs pairs, std::span<const Move> moves, std::size_t k
 /// Whether these motions show the move too; false only where they were tested and do not.
 bool shown_by(Pairs pairs, const Problem& problem, const Move& move, std::int64_t origin_us,
               const MovesOptions& options) {
-  const std::int64_t time_us = origin_us + static_cast<std::int64_t>(second_us * move.time);
+  const std::int64_t time_us = origin_us + to_microseconds(move.time);
   const std::optional<double> chance = chance_of_move(pairs, problem, move.kind, time_us, options);
   return !chance || *chance <= options.confirmation;
 }

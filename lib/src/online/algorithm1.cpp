@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/online/algorithm1.hpp"
+#include "egocal/microseconds.hpp"
 
 namespace egocal {
 
@@ -14,7 +15,7 @@ OnlineStep algorithm1_step(const Problem& problem, std::int64_t time_us, const O
     step.fast_verified = step.answer.certificate.optimality == Optimality::certified;
   }
   if (!state.last || !step.fast_verified) step.state.last_local_error_us = time_us;  // lines 8, 9
-  const std::int64_t t_no_fail_us = static_cast<std::int64_t>(options.t_no_fail * 1e6);
+  const std::int64_t t_no_fail_us = to_microseconds(options.t_no_fail);
   step.global_wanted =
       step.state.last_local_error_us && time_us - *step.state.last_local_error_us <= t_no_fail_us;
   if (step.global_wanted && options.global) {  // lines 10, 11

@@ -18,10 +18,6 @@ namespace {
 constexpr std::size_t released_at_once = 8;
 constexpr std::size_t without_limit = std::numeric_limits<std::size_t>::max();
 
-std::int64_t us(double seconds) {
-  return std::llround(seconds * 1e6);
-}
-
 bool good(const TimeOffset& offset, const ClockOptions& options) {
   return offset.correlation >= options.least_correlation && offset.stddev <= options.largest_stddev &&
          offset.inliers >= options.least_inliers;
@@ -62,7 +58,7 @@ ClockFollower::ClockFollower(const PairingOptions& options) : ClockFollower(opti
 
 ClockFollower::ClockFollower(const PairingOptions& options, ClockState state)
     : options_(options.clock), max_gap_(options.max_gap), state_(std::move(state)) {
-  if (state_.next_us == 0) state_.next_us = us(options_.first + options_.phase * options_.delay);
+  if (state_.next_us == 0) state_.next_us = to_microseconds(options_.first + options_.phase * options_.delay);
 }
 
 ClockFollower::ClockFollower(const ClockFollower& other)
@@ -81,7 +77,7 @@ std::vector<ReleasedPose> ClockFollower::push(Side side, const StampedPose& pose
     return one.time_us < other.time_us;
   };
   stream.held.insert(std::upper_bound(stream.held.begin(), stream.held.end(), pose, later), pose);
-  const std::int64_t spacing = us(TimeOffsetOptions{}.least_spacing);
+  const std::int64_t spacing = to_microseconds(TimeOffsetOptions{}.least_spacing);
   if (stream.window.empty() || pose.time_us - stream.window.back().time_us >= spacing)
     stream.window.push_back(pose);
   search_on();
@@ -145,7 +141,9 @@ bool ClockFollower::due() {
 /// Whether the pose is near the others of its stream in time. A pose that is not waits for the next one: if
 /// both agree the clock was set, otherwise the pose is dropped.
 bool ClockFollower::admit(ClockState::Stream& stream, const StampedPose& pose) {
-  const auto far = [this](std::int64_t x, std::int64_t y) { return std::abs(x - y) > us(options_.longest); };
+  const auto far = [this](std::int64_t x, std::int64_t y) {
+    return std::abs(x - y) > to_microseconds(options_.longest);
+  };
   if (stream.newest_us && far(pose.time_us, *stream.newest_us)) {
     const bool confirmed = stream.stray && !far(pose.time_us, stream.stray->time_us);
     if (stream.stray) ++state_.given_up;
@@ -167,7 +165,7 @@ void ClockFollower::restart() {
     stream = {};
   }
   search_.reset();
-  state_.next_us = us(options_.first + options_.phase * options_.delay);
+  state_.next_us = to_microseconds(options_.first + options_.phase * options_.delay);
   state_.near = false;
   if (state_.in_force) ++state_.changes;
   state_.in_force.reset();
@@ -187,7 +185,7 @@ std::int64_t ClockFollower::common_us() const {
 
 /// The estimate comes into force here at the earliest.
 std::int64_t ClockFollower::boundary_us() const {
-  return state_.next_us + us(options_.delay);
+  return state_.next_us + to_microseconds(options_.delay);
 }
 
 void ClockFollower::begin_search() {
@@ -199,7 +197,8 @@ void ClockFollower::begin_search() {
     options.near = to_seconds(on_clock_of_a(*state_.in_force, end_us) - end_us);
   }
   // streams with different beginnings overlap only in the longer window
-  const std::int64_t begin = state_.next_us - us(state_.in_force ? options_.window : options_.longest);
+  const std::int64_t begin =
+      state_.next_us - to_microseconds(state_.in_force ? options_.window : options_.longest);
   search_ = std::make_unique<TimeOffsetSearch>(part(state_.streams[0], begin, state_.next_us),
                                                part(state_.streams[1], begin, state_.next_us), options);
 }
@@ -232,18 +231,18 @@ void ClockFollower::conclude(std::int64_t worked_us, std::vector<ReleasedPose>& 
   }
   // the shares of the next one begin with it
   do {
-    state_.next_us += us(state_.in_force ? options_.every : options_.first);
+    state_.next_us += to_microseconds(state_.in_force ? options_.every : options_.first);
   } while (state_.next_us < worked_us);
 }
 
 /// On the first estimate: from now on the times of both streams count from the same instant.
 void ClockFollower::take_force(const TimeOffset& offset, std::int64_t worked_us) {
   ClockState::Stream& b = state_.streams[1];
-  const std::int64_t begin_us = *state_.streams[0].begin_us - us(offset.seconds);
+  const std::int64_t begin_us = *state_.streams[0].begin_us - to_microseconds(offset.seconds);
   const std::int64_t later_us = *b.begin_us - begin_us;
   b.begin_us = begin_us;
   const std::int64_t concluded_us = std::max(state_.next_us, worked_us);
-  state_.next_us = std::max(concluded_us, concluded_us + later_us) + us(options_.every);
+  state_.next_us = std::max(concluded_us, concluded_us + later_us) + to_microseconds(options_.every);
   state_.in_force = offset;
   ++state_.changes;
 }
@@ -273,8 +272,9 @@ void ClockFollower::release(std::int64_t until_us, std::size_t most, std::vector
 
 /// Keeps memory bounded, by time and by number.
 void ClockFollower::forget() {
-  const std::int64_t longest_us = us(options_.longest),
-                     held_us = longest_us + us(state_.in_force ? options_.every : 0);  // while being released
+  const std::int64_t longest_us = to_microseconds(options_.longest),
+                     held_us = longest_us +
+                               to_microseconds(state_.in_force ? options_.every : 0);  // while being released
   for (ClockState::Stream& stream : state_.streams) {
     while (!stream.held.empty() && (stream.held.size() > options_.most_held ||
                                     *stream.newest_us - stream.held.front().time_us > held_us)) {

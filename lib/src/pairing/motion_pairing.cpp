@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/pairing/motion_pairing.hpp"
 
-#include <cmath>
 #include <utility>
 
 #include "egocal/limits.hpp"
+#include "egocal/microseconds.hpp"
 
 namespace egocal {
 
@@ -48,7 +48,7 @@ std::vector<MotionPair> MotionPairing::push(Side side, const StampedPose& given)
   pose.pose = normalized(pose.pose);
   std::vector<MotionPair> pairs;
   if (!options_.track_time_offset) {
-    if (side == Side::b) pose.time_us += std::llround(options_.time_offset * 1e6);
+    if (side == Side::b) pose.time_us += to_microseconds(options_.time_offset);
     take(synchroniser_.push(side, pose), pairs);
     if (settles_) settle();
     return pairs;

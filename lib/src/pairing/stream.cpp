@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "egocal/microseconds.hpp"
 #include "pairing/stream_parts.hpp"
 
 namespace egocal {
@@ -97,7 +98,7 @@ void Stream::release_early(std::vector<NumberedPose>& out, bool give_up) {
       const bool waited_enough =
           too_many(state_.early.size()) ||
           (!state_.patient && detail::newest_time(state_.early) - first->second.pose.time_us >=
-                                  detail::microseconds(options_.reorder_window));
+                                  to_microseconds(options_.reorder_window));
       if (!give_up && !waited_enough) return;
       give_up_until(first->first);
     }

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "egocal/microseconds.hpp"
 #include "egocal/pairing/stream.hpp"
 #include "pairing/stream_parts.hpp"
 
@@ -26,7 +27,7 @@ bool lost_between(const StreamState& state, const NumberedPose& next, const Stre
 /// Whether y may be the message after x, or a few later.
 bool Stream::follows(const NumberedPose& x, const NumberedPose& y) const {
   const std::int64_t step = y.pose.time_us - x.pose.time_us;
-  if (step <= 0 || step > detail::microseconds(options_.largest_confirming_step)) return false;
+  if (step <= 0 || step > to_microseconds(options_.largest_confirming_step)) return false;
   return detail::sent_in_order(x, y) && y.seq - x.seq <= options_.most_missing;
 }
 
@@ -43,7 +44,7 @@ std::ptrdiff_t Stream::place_among_candidates(const NumberedPose& sample) const 
 }
 
 std::int64_t Stream::largest_jump_us() const {
-  return std::max(detail::microseconds(options_.largest_jump), options_.jump_periods * state_.period_us);
+  return std::max(to_microseconds(options_.largest_jump), options_.jump_periods * state_.period_us);
 }
 
 /// A sender that repeats this message is sending the same timeline again. A message just before it that came

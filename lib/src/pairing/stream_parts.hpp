@@ -15,10 +15,6 @@ namespace egocal::detail {
 /// Marks a place in StreamState::recent that holds nothing yet.
 constexpr std::int64_t no_time = std::numeric_limits<std::int64_t>::min();
 
-inline std::int64_t microseconds(double seconds) {
-  return static_cast<std::int64_t>(seconds * 1e6);
-}
-
 /// Whether values are in the range that every calculation relies on: differences and products do not
 /// overflow.
 bool possible(const NumberedPose& sample);

@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "egocal/microseconds.hpp"
 #include "egocal/statistics/median.hpp"
 #include "pairing/cut_alike.hpp"
 #include "pairing/smooth_interpolation.hpp"
@@ -35,7 +36,7 @@ Synchroniser::Synchroniser(const PairingOptions& options) : Synchroniser(options
 
 Synchroniser::Synchroniser(const PairingOptions& options, SynchroniserState state)
     : options_(options.synchroniser),
-      max_gap_us_(static_cast<std::int64_t>(options.max_gap * 1e6)),
+      max_gap_us_(to_microseconds(options.max_gap)),
       state_(std::move(state)) {}
 
 std::vector<Instant> Synchroniser::push(Side side, const StampedPose& pose) {

@@ -36,7 +36,7 @@ struct TimeOffsetSearch::Impl {
       : options(given) {
     a.poses = given_a;
     b.poses = given_b;
-    const auto least_us = static_cast<std::int64_t>(options.least_spacing * second_us);
+    const auto least_us = to_microseconds(options.least_spacing);
     for (Stream* stream : {&a, &b}) {
       schedule.add_range(stream->poses.size(), [stream, least_us](std::size_t begin, std::size_t end) {
         stream->kept = thin(stream->poses, begin, end, stream->kept, least_us);
@@ -210,8 +210,7 @@ struct TimeOffsetSearch::Impl {
                        to = std::min(b.poses.back().time_us, a.poses.back().time_us - offset_us);
     if (to <= from) return;
     ClockLine model;
-    model.at_b_us =
-        rate != 0 ? begin_b + static_cast<std::int64_t>(parts->middle() * second_us) : from + (to - from) / 2;
+    model.at_b_us = rate != 0 ? begin_b + to_microseconds(parts->middle()) : from + (to - from) / 2;
     model.at_a_us = model.at_b_us + offset_us;
     model.rate = rate;
     refinement.emplace(a.poses, b.poses, options, max_gap_us, schedule, [this] { compare_candidates(); });

@@ -89,7 +89,7 @@ std::vector<MotionPair> ScaleDrive::taken(const std::vector<MotionPair>& steps) 
 }
 
 std::int64_t ScaleDrive::on_clock_of_a(Side side, std::int64_t time_us) const {
-  return side == Side::b ? time_us + std::llround(options_.pairing.time_offset * 1e6) : time_us;
+  return side == Side::b ? time_us + to_microseconds(options_.pairing.time_offset) : time_us;
 }
 
 /// Builds motions of the wanted length from single steps. A gap ends all that have begun.

@@ -10,6 +10,7 @@
 
 #include "egocal/error.hpp"
 #include "egocal/io/checked_pose.hpp"
+#include "egocal/microseconds.hpp"
 #include "io/text.hpp"
 #include "io/text/line_reader.hpp"
 
@@ -138,7 +139,7 @@ void ColmapImages::read(const std::string& topic, const TakePose& take) {
     double frame = 0;
     parse_number(image.number, frame);
     StampedPose pose;
-    pose.time_us = unit ? time_us(file_, image.line, image.number, *unit) : std::llround(frame / rate_ * 1e6);
+    pose.time_us = unit ? time_us(file_, image.line, image.number, *unit) : to_microseconds(frame / rate_);
     pose.pose = image.T_world_camera;
     poses.push_back(pose);
   }

@@ -264,7 +264,7 @@ std::int64_t TextRecording::time_of_row(const TextRows& rows) const {
   if (!times_.empty()) return rows.count <= times_.size() ? times_[rows.count - 1] : 0;
   if (!layout_.times) {
     const double frame = layout_.index ? value(rows, 0) : static_cast<double>(rows.count - 1);
-    return std::llround(frame / rate_ * 1e6);
+    return to_microseconds(frame / rate_);
   }
   if (layout_.columns.has(Quantity::seconds)) {
     const auto part = [&](Quantity quantity, TimeUnit unit) {
