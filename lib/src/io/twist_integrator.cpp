@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/io/twist_integrator.hpp"
 
-#include <cmath>
-
 #include "egocal/limits.hpp"
 #include "egocal/microseconds.hpp"
+#include "linear_algebra/screw_matrix.hpp"
 
 namespace egocal {
 
@@ -13,12 +12,7 @@ namespace {
 
 /// The motion of a constant twist over a time: the exponential of SE(3).
 Pose screw(const Eigen::Vector3d& way, const Eigen::Vector3d& turn) {
-  constexpr double small = 1e-6;  // [rad]: below, the next term of the series is under rounding
-  const double angle = turn.norm();
-  const double first = angle < small ? 0.5 : (1 - std::cos(angle)) / (angle * angle);
-  const double second = angle < small ? 1.0 / 6 : (angle - std::sin(angle)) / (angle * angle * angle);
-  const Eigen::Vector3d across = turn.cross(way);
-  return {rotation_exp(turn), way + first * across + second * turn.cross(across)};
+  return {rotation_exp(turn), detail::screw_matrix(turn) * way};
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include "diagnosis/words/wording.hpp"
 #include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
-#include "linear_algebra/cross_matrix.hpp"
+#include "linear_algebra/screw_matrix.hpp"
 
 namespace egocal::detail {
 
@@ -27,25 +27,15 @@ double turning_rate(const Trajectory& rows) {
   return sum / to_seconds(rows.back().time_us - rows.front().time_us);
 }
 
-/// What multiplies the way of a twist to give the translation of its screw.
-Eigen::Matrix3d of_screw(const Eigen::Vector3d& turn) {
-  constexpr double small = 1e-6;  // [rad]: below, the next term of the series is under rounding
-  const double angle = turn.norm();
-  const double first = angle < small ? 0.5 : (1 - std::cos(angle)) / (angle * angle);
-  const double second = angle < small ? 1.0 / 6 : (angle - std::sin(angle)) / (angle * angle * angle);
-  const Eigen::Matrix3d cross = cross_matrix(turn);
-  return Eigen::Matrix3d::Identity() + first * cross + second * cross * cross;
-}
-
 /// The same twists, whose turning was in degrees.
 Trajectory in_radians(const Trajectory& rows) {
   Trajectory result = rows;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const Pose step = to_pose(conjugate(rows[i - 1].pose) * rows[i].pose);
     const Eigen::Vector3d turn = rotation_log(step.rotation), right = radians_per_degree * turn;
-    const Eigen::Vector3d way = of_screw(turn).inverse() * step.translation;
-    result[i].pose = canonical_sign(
-        normalized(result[i - 1].pose * to_dual_quaternion({rotation_exp(right), of_screw(right) * way})));
+    const Eigen::Vector3d way = screw_matrix(turn).inverse() * step.translation;
+    result[i].pose = canonical_sign(normalized(
+        result[i - 1].pose * to_dual_quaternion({rotation_exp(right), screw_matrix(right) * way})));
   }
   return result;
 }
