@@ -36,6 +36,16 @@ TEST(StampsInBursts, AreNamedWithTheirStream) {
     }
 }
 
+TEST(StampsInBursts, AreNamedOfAStreamThatNeverTurns) {
+  Trajectory shuttle;
+  for (int i = 0; i < 400; ++i)
+    shuttle.push_back({100'000 * i, testing::displacement({0, 0, 0}, {2 * std::sin(0.05 * i), 0.3 * i, 0})});
+  EXPECT_EQ(detail::motion_in_bursts(shuttle), 0);
+  EXPECT_NEAR(detail::motion_in_bursts(buffered(shuttle, 3)), 1, 0.05);
+  for (StampedPose& pose : shuttle) pose.pose = testing::displacement({0, 0, 0}, {0, 0, 0});
+  EXPECT_EQ(detail::motion_in_bursts(buffered(shuttle, 3)), 0) << "what stands still shows nothing";
+}
+
 TEST(StampsInBursts, OfBothStreamsAreNamedBoth) {
   const testing::Streams streams = drive(Terrain::free);
   const Calibration calibration = calibrate(buffered(streams.a, 4), buffered(streams.b, 4));

@@ -78,6 +78,7 @@ double motion_in_bursts(const Trajectory& poses, const BurstOptions& options) {
   for (const std::vector<Eigen::Vector3d>& steps : {moved, turned}) {
     const WayInBursts way =
         way_of(within, first, options.reach, [&](std::size_t i) { return steps[i - begin]; });
+    if (way.within == 0 && way.between == 0) continue;  // a stream that never turns, or never moves
     const double in = way.within / count, between = way.between / (all - count);
     if (!(between > 0 && in > 0)) return 0;
     const double here = in / between;
