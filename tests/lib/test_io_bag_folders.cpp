@@ -122,6 +122,15 @@ TEST_F(BagFolders, APartThatCannotBeReadIsCountedAndRefusedUnderStrict) {
   }
 }
 
+/// The length of a name is its number's only where the names are otherwise alike.
+TEST_F(BagFolders, WithoutMetadataPartsComeInTheOrderOfTheirNames) {
+  const std::vector<std::string> names{"autumn_day_9.db3", "autumn_day_10.db3", "b_0.db3", "winter.db3"};
+  for (std::size_t i = 0; i < names.size(); ++i)
+    testing::write_db3(folder_.path(names[i]), part(60 * i, 60 * i + 60));
+  expect_all(name());
+  EXPECT_EQ(read_trajectory_file(name()).out_of_order, 0u);
+}
+
 TEST_F(BagFolders, ABagThatTheMetadataDoesNotNameIsNoPart) {
   testing::write_db3(folder_.path("run_10.db3"), part(0, 240));
   testing::write_db3(folder_.path("10.db3"), part(0, 50));

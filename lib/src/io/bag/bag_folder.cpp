@@ -18,9 +18,34 @@ namespace fs = std::filesystem;
 constexpr std::string_view packed_endings[] = {".zstd", ".zst", ".gz", ".bz2", ".lz4"};
 constexpr const char* metadata_name = "metadata.yaml";
 
-/// Order of the parts of a bag by name: "drive_10.db3" after "drive_9.db3".
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// Takes the digits at the start of a text, and returns them without leading zeros.
+std::string_view take_number(std::string_view& text) {
+  const auto end = std::find_if_not(text.begin(), text.end(), is_digit);
+  std::string_view digits = text.substr(0, static_cast<std::size_t>(end - text.begin()));
+  text.remove_prefix(digits.size());
+  digits.remove_prefix(std::min(digits.find_first_not_of('0'), digits.size()));
+  return digits;
+}
+
+/// Order of the parts of a bag by name: "drive_10.db3" after "drive_9.db3", and before "evening.db3".
 bool natural_less(const std::string& a, const std::string& b) {
-  return a.size() != b.size() ? a.size() < b.size() : a < b;
+  std::string_view rest_a = a, rest_b = b;
+  while (!rest_a.empty() && !rest_b.empty()) {
+    if (is_digit(rest_a[0]) && is_digit(rest_b[0])) {
+      const std::string_view x = take_number(rest_a), y = take_number(rest_b);
+      if (x != y) return x.size() != y.size() ? x.size() < y.size() : x < y;
+      continue;
+    }
+    if (rest_a[0] != rest_b[0]) return rest_a[0] < rest_b[0];
+    rest_a.remove_prefix(1);
+    rest_b.remove_prefix(1);
+  }
+  if (rest_a.empty() != rest_b.empty()) return rest_a.empty();
+  return a < b;  // 1 and 01
 }
 
 std::string without_packing(const std::string& name) {
