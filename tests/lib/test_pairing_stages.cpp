@@ -45,6 +45,12 @@ TEST(PairingOptions, OutOfTheirRangeAreRefusedByName) {
   options.screening.congruence.longest_lever_arm = nan;
   EXPECT_TRUE(refused(options, "longest_lever_arm"));
   options = {};
+  options.clock.phase = 1;  // a whole delay later: as late as the next pair of the rig
+  EXPECT_TRUE(refused(options, "clock.phase"));
+  options = {};
+  options.accumulator.choice_phase = 1;
+  EXPECT_TRUE(refused(options, "choice_phase"));
+  options = {};
   options.accumulator.balances = {};
   EXPECT_TRUE(refused(options, "balances"));
 }

@@ -54,7 +54,7 @@ void check(const ClockOptions& options) {
   require("clock.largest_stddev", options.largest_stddev, {0, 10}, " s");
   require("clock.least_change", options.least_change, {0, 10}, " s");
   require("clock.change_sigmas", options.change_sigmas, {0, 1000}, " standard deviations");
-  require("clock.phase", options.phase, {0, 1}, "");
+  require("clock.phase", options.phase >= 0 && options.phase < 1, "from 0 to below 1");
 }
 
 void check(const CongruenceOptions& options) {
@@ -94,7 +94,7 @@ void check(const AccumulatorOptions& options) {
     require("balances", weight, limits::translation_weight, " 1/m^2");
     require("balances", weight > 0, "weights above 0");
   }
-  require("choice_phase", options.choice_phase, {0, 1}, "");
+  require("choice_phase", options.choice_phase >= 0 && options.choice_phase < 1, "from 0 to below 1");
 }
 
 }  // namespace
