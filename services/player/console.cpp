@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "player/printed_text.hpp"
@@ -19,13 +20,13 @@ void Console::say(const std::string& line) {
 
 void Console::say_damage(const bus::LogDamage& damage, std::uint64_t most_reported) {
   if (damage.regions <= reported_regions_ && damage.jumps <= reported_jumps_) return;
-  const std::uint64_t places = damage.regions + damage.jumps;
-  if (places <= most_reported)
+  if (damage_lines_ < most_reported)
     say(printed_text("the log is damaged here: %llu bytes and at least %llu events lost so far",
                      static_cast<unsigned long long>(damage.bytes),
                      static_cast<unsigned long long>(damage.lost_events)));
-  else if (reported_regions_ + reported_jumps_ <= most_reported)
+  else if (damage_lines_ == most_reported)
     say("the log is damaged in more places; their number will be reported at the end");
+  damage_lines_ = std::min(damage_lines_, most_reported) + 1;
   take_as_reported(damage);
 }
 

@@ -28,7 +28,8 @@ class Console {
   /// Prints a line without breaking the line that shows the progress.
   void say(const std::string& line);
 
-  /// Says what has been skipped just now; of the first most_reported places each by itself.
+  /// Says what has been skipped just now, most_reported times: damage that one read has met is one line, of
+  /// however many places.
   void say_damage(const bus::LogDamage& damage, std::uint64_t most_reported);
   /// Takes this much of the damage as reported already.
   void take_as_reported(const bus::LogDamage& damage);
@@ -43,6 +44,7 @@ class Console {
   bool terminal_ = false, line_open_ = false;
   std::int64_t shown_mono_us_ = 0;
   std::uint64_t reported_regions_ = 0, reported_jumps_ = 0;
+  std::uint64_t damage_lines_ = 0;  ///< said of it
 };
 
 }  // namespace egocal::services

@@ -35,7 +35,7 @@ struct PaceOptions {
   std::int64_t end_wait_us = 10'000'000;
   /// The line of progress is drawn this often [us].
   std::int64_t progress_period_us = 200'000;
-  /// Damaged places of a log that are reported one by one; later ones are only counted.
+  /// Damage of a log that is reported when it is met, this many times; later damage is only counted.
   std::uint64_t most_reported = 5;
 };
 
