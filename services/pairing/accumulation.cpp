@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include "egocal/bus/odometry.hpp"
 #include "egocal/error.hpp"

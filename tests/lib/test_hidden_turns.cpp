@@ -3,6 +3,9 @@
 // Circles on flat ground: the answer may be turned about their centre, and what that moves is not known.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
 #include <numbers>
 #include <string>

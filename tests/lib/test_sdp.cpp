@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <limits>
+#include <numbers>
 
 #include "../support/random_motion.hpp"
 #include "egocal/evaluation/errors.hpp"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "egocal/error.hpp"
 #include "egocal/evaluation/errors.hpp"

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "../support/random_motion.hpp"
 #include "egocal/evaluation/errors.hpp"

@@ -3,6 +3,7 @@
 #include "egocal/solvers/sqp.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <limits>
 
 #include "egocal/problem/cost.hpp"
