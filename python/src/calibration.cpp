@@ -204,8 +204,8 @@ void bind_answer(py::class_<NotedCalibration>& type) {
       .def_property_readonly(
           "findings", [](const NotedCalibration& c) { return findings_of(c.findings); },
           "what was found, the most important first: dicts with the keys of `egocal solve --json`, code, "
-          "certain, "
-          "message, remedy, improvement and, where there is one, value, time [s], translation, rotation_wxyz")
+          "certain, message, remedy, improvement and, where there is one, value, time [s], translation, "
+          "rotation_wxyz")
       .def_property_readonly(
           "statistics", [](const NotedCalibration& c) { return sum_blocks(c.problem.blocks); },
           "Statistics of all motions: those of several drives of one rig add up")

@@ -105,8 +105,7 @@ void bind_statistics(py::module_& module) {
         return to_matrix(egocal::to_pose(solution.q));
       },
       "(4, 4): the global minimum of (18) for the cost matrix Q (8, 8). verify() proves it. An EgocalWarning "
-      "is "
-      "given where Q shows no extrinsic; the identity is returned then.",
+      "is given where Q shows no extrinsic; the identity is returned then.",
       "Q"_a);
   module.def("verify", &verified,
              "Whether T_a_b (4, 4), wherever it comes from, is the global minimum for Q (8, 8): a dict of\n"

@@ -196,10 +196,9 @@ std::vector<NoisePoint> noise_experiment(const NoiseOptions& options,
 
 std::string csv(const std::vector<NoisePoint>& points) {
   std::string text =
-      "noise,pairs,translation_median_m,translation_quartile_1_m,translation_quartile_3_m,translation_worst_"
-      "m,"
-      "rotation_median_deg,rotation_quartile_1_deg,rotation_quartile_3_deg,rotation_worst_deg,"
-      "translation_spread_m,rotation_spread_deg,translation_shortened,certified,runs\n";
+      "noise,pairs,translation_median_m,translation_quartile_1_m,translation_quartile_3_m,"
+      "translation_worst_m,rotation_median_deg,rotation_quartile_1_deg,rotation_quartile_3_deg,"
+      "rotation_worst_deg,translation_spread_m,rotation_spread_deg,translation_shortened,certified,runs\n";
   const auto numbers = [](const NoisePoint::Errors& errors, double factor) {
     return fmt::format("{:.9g},{:.9g},{:.9g},{:.9g}", factor * errors.median, factor * errors.lower_quartile,
                        factor * errors.upper_quartile, factor * errors.worst);

@@ -132,9 +132,8 @@ std::string figure_4_part(const PaperOptions& options, const PaperData&, const P
       drive.mean_translation(), drive.mean_rotation());
   text += fmt::format(
       "<p>{} optimisations ({} noise levels, {} sizes, {} pairs of sensors 2 to 8 m apart, {} runs), {} "
-      "certified, "
-      "{:.2f} s of solving and proving. The paper: {} optimisations ({} x {} x {} x {}); {} ms each would be "
-      "{:.1f} hours.</p>\n",
+      "certified, {:.2f} s of solving and proving. The paper: {} optimisations ({} x {} x {} x {}); {} ms "
+      "each would be {:.1f} hours.</p>\n",
       runs, noise.levels.size(), noise.sizes, noise.sensors, noise.repeats, certified, seconds,
       paper::optimisations, paper::noise_levels, paper::sizes, paper::sensor_pairs, paper::runs,
       paper::table_1[3].milliseconds, paper::optimisations * paper::table_1[3].milliseconds / 3.6e6);

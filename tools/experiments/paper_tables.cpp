@@ -107,8 +107,8 @@ std::string table_1_part(const PaperOptions& options, const PaperData&, const Pa
   write_table(options, "table-1", rows);
   return fmt::format(
              "<p>The paper uses 200 frames of two RGB-D cameras, which are not at hand. Here: {} "
-             "simulated "
-             "frames of two hand-held sensors 27 cm apart, {:g} % noise. Times: median of {}.</p>\n",
+             "simulated frames of two hand-held sensors 27 cm apart, {:g} % noise. Times: median of "
+             "{}.</p>\n",
              data.pairs.size(), 100 * simulation.relative_noise, options.repeats) +
          header + paper_rows(paper::table_1, "3-D") + our_rows(rows, Mode::spatial) + "</table>\n";
 }

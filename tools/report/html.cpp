@@ -112,8 +112,7 @@ std::string uncertainty(const Calibration& calibration, const char* frame) {
     table += "<p>" + escaped(calibration.observability.hint) + "</p>\n";
   return table +
          "<p class='note'>A standard deviation says how far the answer of another drive of this kind would "
-         "be off. It "
-         "does not contain what both drives would get wrong alike: systematic errors of the "
+         "be off. It does not contain what both drives would get wrong alike: systematic errors of the "
          "odometries.</p>\n";
 }
 

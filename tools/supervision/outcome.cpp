@@ -169,8 +169,7 @@ std::string missing_end(const PairName& pair, const Answers& answers, double unr
   if (after_clock > 0)
     return fmt::format(
         "old answer, the last {:.1f} s of the log are not in it (a sensor's clock went back, and no motion "
-        "was "
-        "found after that)",
+        "was found after that)",
         after_clock);
   const double unanswered = answers.seconds_not_answered(pair);
   if (answers.answered_to_the_end(pair) && unread == 0) return {};
@@ -200,8 +199,7 @@ std::string line_of(const PairName& pair, const Answers& answers, const std::str
   if (hole.seconds > 0)
     text += fmt::format(
         "  about {:.1f} s in the middle of the log are not in this answer, between {:.1f} and {:.1f} s: "
-        "pairing "
-        "did not get them, or was paused\n",
+        "pairing did not get them, or was paused\n",
         hole.seconds, hole.begin, hole.end);
   if (without_motion > 0)
     text += fmt::format(

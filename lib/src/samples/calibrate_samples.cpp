@@ -220,8 +220,7 @@ void judge_samples(const Judged& judged, const SampleOptions& options, Calibrati
     diagnosis.verdict = Verdict::doubtful;
     diagnosis.reason =
         "These samples agree badly: what one of them leaves unexplained is larger than errors of an arm or "
-        "of "
-        "a detector are. Make sure that the rows belong together and that nothing moved meanwhile.";
+        "of a detector are. Make sure that the rows belong together and that nothing moved meanwhile.";
   }
   calibration.verdict = diagnosis.verdict;
   calibration.reason = std::move(diagnosis.reason);

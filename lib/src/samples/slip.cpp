@@ -199,8 +199,7 @@ Finding worded_slip(const FoundSlip& slip, bool metres, bool certain) {
   finding.T_a_b = slip.after;
   finding.message = format(
       "From about sample %zu on (in the order given) %s is elsewhere, by %s and %.2g deg: the squared "
-      "residuals "
-      "are %.3g times smaller with two places.",
+      "residuals are %.3g times smaller with two places.",
       slip.row + 1, slip.of_target ? "the target" : "the camera", length_in_words(slip.shift, metres).c_str(),
       slip.turn * degrees_per_radian, slip.gain);
   finding.remedy = format("Fasten camera and target. Calibrate the samples before and after %zu separately.",

@@ -56,8 +56,7 @@ std::string samples_text(const SolveResult& result) {
   const std::vector<std::size_t> wrong = wrong_rows(result);
   std::string text = fmt::format(
       "samples       {}{}\nfit           spread of the target {:.3g} mm (median), {:.3g} mm (rms), {:.3g} mm "
-      "at "
-      "most; noise of one sample {:.3g} deg, {:.3g} mm\n",
+      "at most; noise of one sample {:.3g} deg, {:.3g} mm\n",
       samples.residuals.size(),
       wrong.empty() ? std::string()
                     : fmt::format(", {} wrong and not used: {} {}", wrong.size(),

@@ -13,7 +13,7 @@
 namespace egocal {
 
 /// Whether an answer can be used. A certificate says that no other extrinsic has a lower cost; it does not
-/// say that the motions are those of rigidly mounted sensors. The verdict does.
+/// say that the motions are those of rigidly mounted sensors. This does.
 enum class Verdict {
   good,           ///< the motions agree, and every direction is known well enough
   incomplete,     ///< the motions agree; some direction is not known well enough yet
@@ -107,7 +107,7 @@ struct Goal {
   std::string next;                    ///< the manoeuvre that helps most, for a driver; empty when reached
 };
 
-/// Everything that is said of an answer and its streams.
+/// All of it.
 struct Diagnosis {
   Verdict verdict = Verdict::incomplete;
   std::string reason;  ///< of the verdict, one line

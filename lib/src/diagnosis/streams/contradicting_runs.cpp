@@ -90,8 +90,7 @@ void name_contradicting_runs(const Instants& instants, const Motions& motions, c
   finding.message = format(
       "These motions contradict each other: in %zu parts of the drive, together %.3g s or %.0f %% of it, the "
       "answer of the others explains no motion. A sensor is on a part that is towed, steered or sprung, or "
-      "its "
-      "odometry is lost again and again.",
+      "its odometry is lost again and again.",
       found.runs, found.seconds, 100 * found.part);
   finding.remedy = "Fasten both sensors to one rigid part, and record again.";
   findings.insert(findings.begin(), std::move(finding));

@@ -160,8 +160,7 @@ std::optional<Finding> filled_gaps(const Evidence& evidence, const DualQuaternio
     finding.time = filled.front().begin;
     say(finding,
         format("From %.1f to %.1f s after the start%s, the positions of %s lie on a straight line, or stay, "
-               "which "
-               "the other sensor does not: they were filled in where %s had none",
+               "which the other sensor does not: they were filled in where %s had none",
                filled.front().begin, filled.front().end, others.c_str(), mark(which), mark(which)),
         format("Give the poses of %s as they were measured, without those that fill gaps.", mark(which)),
         ".");
