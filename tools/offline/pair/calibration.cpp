@@ -21,7 +21,7 @@
 #include "offline/pair/as_solved.hpp"
 #include "offline/pair/baseline_answer.hpp"
 #include "offline/pair/motions.hpp"
-#include "offline/pair/remedies.hpp"
+#include "offline/pair/option_remedies.hpp"
 #include "offline/pair/samples.hpp"
 #include "offline/pair/solve_time.hpp"
 #include "offline/pair/unit.hpp"

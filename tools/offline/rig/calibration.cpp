@@ -19,8 +19,8 @@
 #include "offline/reading/log_trajectory.hpp"
 #include "offline/reading/trajectory_source.hpp"
 #include "offline/rig/clocks.hpp"
-#include "offline/rig/findings.hpp"
 #include "offline/rig/joint.hpp"
+#include "offline/rig/rig_findings.hpp"
 
 namespace egocal::tools {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "offline/rig/findings.hpp"
+#include "offline/rig/rig_findings.hpp"
 
 #include <fmt/format.h>
 
@@ -14,8 +14,8 @@
 #include "egocal/diagnosis/certain_of_either.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/rig/rig_moves.hpp"
+#include "offline/rig/rig_wording.hpp"
 #include "offline/rig/unusable.hpp"
-#include "offline/rig/words.hpp"
 
 namespace egocal::tools {
 

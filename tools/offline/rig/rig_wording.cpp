@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "offline/rig/words.hpp"
+#include "offline/rig/rig_wording.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "offline/pair/remedies.hpp"
+#include "offline/pair/option_remedies.hpp"
 
 #include <fmt/format.h>
 
