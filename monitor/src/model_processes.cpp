@@ -3,8 +3,10 @@
 // How the model handles the processes: states, errors, counts and rates, and the commands to them.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "answer_text.hpp"
 #include "egocal/microseconds.hpp"
@@ -57,68 +59,83 @@ bool Model::is_own(const ProcessState& process) const {
          process.status.host == options_.own_host;
 }
 
-void Model::on_status(const status_t& message, Now now) {
-  now_ = now;
-  ++messages_;
+/// The process that a status is of; null: it is new. Several people may watch: monitors are told apart by
+/// their numbers.
+ProcessState* Model::process_of(const status_t& message) {
   const std::string name = bounded(message.name), host = bounded(message.host);
-  // several people may watch
   const bool is_monitor = message.role == bus::role_name(Role::monitor);
   ProcessState* process = nullptr;
   for (ProcessState& candidate : processes_)
     if (candidate.status.name == name && candidate.status.host == host &&
         (!is_monitor || candidate.status.pid == message.pid))
       process = &candidate;
-  const std::string state_text = bounded(message.state), error = bounded(message.last_error);
+  return process;
+}
+
+/// A process that was not there, in the place of one that is gone where there are many; null: there is no
+/// place.
+ProcessState* Model::new_process(const status_t& message, Now now) {
+  if (processes_.size() == max_processes) {
+    auto gone = std::find_if(processes_.begin(), processes_.end(), [](const auto& p) { return !p.alive; });
+    if (gone == processes_.end()) return nullptr;
+    processes_.erase(gone);
+  }
+  ProcessState& process = processes_.emplace_back();
+  process.rate_in = process.rate_out = -1;
+  process.alive = bus::state_from_name(message.state) != bus::State::ended;
+  if (process.alive)
+    note(Severity::good, bounded(message.name), "process is there (" + bounded(message.state) + ")", now);
+  return &process;
+}
+
+/// Reports what a status changes of a process that is known: another run, its end or return, its state.
+void Model::follow(ProcessState& process, const status_t& message, Now now) {
+  const std::string name = bounded(message.name), state_text = bounded(message.state);
   const std::optional<bus::State> state = bus::state_from_name(message.state);
-  const bool is_new = !process;
-  const bool restarted = process && process->status.run != message.run;
-  if (!process) {
-    if (processes_.size() == max_processes) {
-      auto gone = std::find_if(processes_.begin(), processes_.end(), [](const auto& p) { return !p.alive; });
-      if (gone == processes_.end()) {
-        ++ignored_;
-        return;
-      }
-      processes_.erase(gone);
-    }
-    process = &processes_.emplace_back();
-    process->rate_in = process->rate_out = -1;
-    process->alive = state != bus::State::ended;
-    if (process->alive) note(Severity::good, name, "process is there (" + state_text + ")", now);
-  } else {
-    const bool ended = state == bus::State::ended;
-    const std::pair<std::int64_t, std::int32_t> run{message.run, message.pid};
-    if (restarted && process->alive && !ended && process->run_before == run) {
-      note(Severity::warning, name, "a second process of this name is running", now);
-    } else if (restarted) {
-      note(Severity::good, name, process->alive ? "process was restarted" : "process is back", now);
-    } else if (!process->alive && !ended) {
-      note(Severity::good, name, "process is back", now);
-    } else if (process->status.state != state_text) {
-      // a pause was asked for
-      const bool healthy = ended || state == bus::State::running || state == bus::State::standby ||
-                           state == bus::State::paused;
-      note(healthy ? Severity::info : Severity::warning, name,
-           "changed from " + process->status.state + " to " + state_text, now);
-    }
-    if (process->state == bus::State::paused && state != bus::State::paused)
-      process->resumed_mono_us = now.mono_us;
-    process->alive = !ended;
-    if (restarted) {
-      process->run_before = {process->status.run, process->status.pid};
-      process->rate_mono_us = 0;
-      for (PairState& pair : pairs_)
-        for (SolverTrack& track : pair.solvers)
-          if (track.name == name) track.settled = false;
-    }
+  const bool ended = state == bus::State::ended, restarted = process.status.run != message.run;
+  const std::pair<std::int64_t, std::int32_t> run{message.run, message.pid};
+  if (restarted && process.alive && !ended && process.run_before == run) {
+    note(Severity::warning, name, "a second process of this name is running", now);
+  } else if (restarted) {
+    note(Severity::good, name, process.alive ? "process was restarted" : "process is back", now);
+  } else if (!process.alive && !ended) {
+    note(Severity::good, name, "process is back", now);
+  } else if (process.status.state != state_text) {
+    // a pause was asked for
+    const bool healthy =
+        ended || state == bus::State::running || state == bus::State::standby || state == bus::State::paused;
+    note(healthy ? Severity::info : Severity::warning, name,
+         "changed from " + process.status.state + " to " + state_text, now);
+  }
+  if (process.state == bus::State::paused && state != bus::State::paused)
+    process.resumed_mono_us = now.mono_us;
+  process.alive = !ended;
+  if (!restarted) return;
+  process.run_before = {process.status.run, process.status.pid};
+  process.rate_mono_us = 0;
+  for (PairState& pair : pairs_)
+    for (SolverTrack& track : pair.solvers)
+      if (track.name == name) track.settled = false;
+}
+
+void Model::on_status(const status_t& message, Now now) {
+  now_ = now;
+  ++messages_;
+  ProcessState* process = process_of(message);
+  const bool is_new = !process, restarted = process && process->status.run != message.run;
+  if (process) {
+    follow(*process, message, now);
+  } else if (process = new_process(message, now); !process) {
+    ++ignored_;
+    return;
   }
   process->at = now;
   process->announced = bus::announced_silence(message);
   process->computes = false;
   process->status = bounded_status(message);
-  process->state = state;
+  process->state = bus::state_from_name(message.state);
 
-  watch_error(*process, error, now);
+  watch_error(*process, bounded(message.last_error), now);
   watch_seeks(*process, message, is_new || restarted, now);
   count_messages(*process, message, is_new, now);
   update_rates(*process, now);

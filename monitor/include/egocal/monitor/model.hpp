@@ -270,6 +270,9 @@ class Model {
   void watch_fallback(PairState& pair, SolverTrack& track, const calibration_t& message, Now now);
   void watch_time(PairState& pair, const problem_t& message, Now now);
   void note_new_session(PairState& pair, std::int64_t session, Now now);
+  ProcessState* process_of(const status_t& message);
+  ProcessState* new_process(const status_t& message, Now now);
+  void follow(ProcessState& process, const status_t& message, Now now);
   void watch_error(ProcessState& process, const std::string& error, Now now);
   void watch_seeks(ProcessState& process, const status_t& message, bool is_first, Now now);
   void interrupt(PairState& pair, Interruption::Kind kind, int jumps, Now now);
