@@ -96,15 +96,12 @@ void add_options_of_other_sources(cli::App command, RequestOptions& options) {
                    "with --samples: the camera stands beside the arm; the answer is the camera in the base");
 }
 
-}  // namespace
-
-SolveRequest understood(const RequestOptions& options) {
-  SolveRequest result;
-  result.unanswered = print_warnings;
-  result.source = options.source;
-  result.source.reading_a = options.reading.of_a();
-  result.source.reading_b = options.reading.of_b();
-  result.append = options.append;
+/// Which files are read, and how.
+void read_source(const RequestOptions& options, SolveRequest& request) {
+  request.source = options.source;
+  request.source.reading_a = options.reading.of_a();
+  request.source.reading_b = options.reading.of_b();
+  request.append = options.append;
   const bool trajectories = options.source.pairs.empty();
   if (trajectories && (options.source.a.empty() || options.source.b.empty()))
     throw UsageError(!options.source.log.empty() ? "expected two channel names A and B of the log"
@@ -115,55 +112,70 @@ SolveRequest understood(const RequestOptions& options) {
     throw UsageError("--pairs: takes the place of A and B and of --log");
   if (!trajectories) refuse_options_of_streams(options);
   if (!options.source.log.empty()) refuse_reading_options(options.reading, "--log");
-  result.method = options.method;
+}
 
+void read_planes(const RequestOptions& options, PairingOptions& pairing) {
   if (options.planar != (!options.plane_a.empty() || !options.plane_b.empty()) ||
       options.plane_a.empty() != options.plane_b.empty())
     throw UsageError("--planar: goes with both --plane-a and --plane-b");
-  if (options.planar) {
-    result.calibration.pairing.mode = Mode::planar;
-    result.calibration.pairing.plane_a = plane("--plane-a", options.plane_a);
-    result.calibration.pairing.plane_b = plane("--plane-b", options.plane_b);
-  }
+  if (!options.planar) return;
+  pairing.mode = Mode::planar;
+  pairing.plane_a = plane("--plane-a", options.plane_a);
+  pairing.plane_b = plane("--plane-b", options.plane_b);
+}
 
+void read_weights_and_stride(const RequestOptions& options, PairingOptions& pairing) {
   // equal weights are the paper's plain method: every motion of one step, no outliers
   if (options.weights == "equal") {
-    result.calibration.pairing.balance = Balance{};
-    result.calibration.pairing.robust = false;
-    if (options.stride.empty()) result.calibration.pairing.stride = 1;
+    pairing.balance = Balance{};
+    pairing.robust = false;
+    if (options.stride.empty()) pairing.stride = 1;
   } else if (options.weights != "auto") {
-    result.calibration.pairing.balance = balance("--weights", options.weights);
+    pairing.balance = balance("--weights", options.weights);
   }
-  if (!options.stride.empty() && options.stride != "auto") {
-    const double stride = number_in("--stride", options.stride, limits::stride);
-    if (stride != static_cast<int>(stride))
-      throw UsageError("--stride: expected auto or a whole number, got '" + options.stride + "'");
-    result.calibration.pairing.stride = static_cast<int>(stride);
-  }
+  if (options.stride.empty() || options.stride == "auto") return;
+  const double stride = number_in("--stride", options.stride, limits::stride);
+  if (stride != static_cast<int>(stride))
+    throw UsageError("--stride: expected auto or a whole number, got '" + options.stride + "'");
+  pairing.stride = static_cast<int>(stride);
+}
+
+void read_nominal(const RequestOptions& options, SolveRequest& request) {
+  if (options.nominal.empty()) return;
+  const Pose given = nominal("--nominal", options.nominal);
+  if (is_part(given))
+    request.nominal_part = given;
+  else
+    request.calibration.pairing.prior = to_dual_quaternion(given);
+  refuse_unused_nominal(options, is_part(given));
+}
+
+}  // namespace
+
+SolveRequest understood(const RequestOptions& options) {
+  SolveRequest result;
+  result.unanswered = print_warnings;
+  read_source(options, result);
+  result.method = options.method;
+  CalibrationOptions& calibration = result.calibration;
+  read_planes(options, calibration.pairing);
+  read_weights_and_stride(options, calibration.pairing);
   if (options.time_offset == "auto")
-    result.calibration.estimate_time_offset = true;
+    calibration.estimate_time_offset = true;
   else if (!options.time_offset.empty())
-    result.calibration.pairing.time_offset =
-        number_in("--time-offset", options.time_offset, limits::time_offset);
-  result.calibration.pairing.max_gap = options.max_gap;
-  result.calibration.read_a = reading(options.invert_a, options.order_a);
-  result.calibration.read_b = reading(options.invert_b, options.order_b);
-  if (!trajectories &&
+    calibration.pairing.time_offset = number_in("--time-offset", options.time_offset, limits::time_offset);
+  calibration.pairing.max_gap = options.max_gap;
+  calibration.read_a = reading(options.invert_a, options.order_a);
+  calibration.read_b = reading(options.invert_b, options.order_b);
+  if (!options.source.pairs.empty() &&
       (options.invert_a || options.invert_b || !options.order_a.empty() || !options.order_b.empty()))
     throw UsageError("--invert, --quaternion-order: apply to poses, not to motion pairs");
-  if (!options.goal.empty()) result.calibration.diagnosis.goal = goal("--goal", options.goal);
+  if (!options.goal.empty()) calibration.diagnosis.goal = goal("--goal", options.goal);
   read_scale("--scale", options.scale, Side::a, result);
   read_scale("--scale-a", options.scale_a, Side::a, result);
   read_scale("--scale-b", options.scale_b, Side::b, result);
   if (!options.truth.empty()) result.truth = pose("--truth", options.truth);
-  if (!options.nominal.empty()) {
-    const Pose given = nominal("--nominal", options.nominal);
-    if (is_part(given))
-      result.nominal_part = given;
-    else
-      result.calibration.pairing.prior = to_dual_quaternion(given);
-    refuse_unused_nominal(options, is_part(given));
-  }
+  read_nominal(options, result);
   read_samples(options, result);
   return result;
 }
