@@ -63,6 +63,7 @@ std::string samples_text(const SolveResult& result) {
                                   wrong.size() == 1 ? "row" : "rows", fmt::join(wrong, ", ")),
       1e3 * samples.spread_median, 1e3 * samples.spread_rms, 1e3 * samples.spread_largest,
       samples.noise_rotation * degrees_per_radian, 1e3 * samples.noise_translation);
+  const Pose& Y = samples.T_world_a_world_b;
   text += fmt::format("{:<14}x y z {:.6f} {:.6f} {:.6f} m, q w x y z {:.9f} {:.9f} {:.9f} {:.9f} ({})\n",
                       "target", Y.translation.x(), Y.translation.y(), Y.translation.z(), Y.rotation.w(),
                       Y.rotation.x(), Y.rotation.y(), Y.rotation.z(), target_name(result));
