@@ -6,6 +6,7 @@
 
 #include "egocal/limits.hpp"
 #include "egocal/microseconds.hpp"
+#include "pairing/single_stride_choice.hpp"
 
 namespace egocal {
 
@@ -180,6 +181,16 @@ PairingResult pair_motions(const PairingOptions& options, const Trajectory& a, c
   for (InOrder poses(a, b); poses.more();) take(poses.push_next(drive));
   take(drive.finish());
   return {std::move(drive), std::move(pairs)};
+}
+
+Choice detail::single_stride_choice(const PairingOptions& options, const Trajectory& a, const Trajectory& b) {
+  PairingState state = MotionPairing(options).state();
+  state.accumulator.sums.reset();
+  MotionPairing drive(options, std::move(state));
+  drive.read_at_end();
+  for (InOrder poses(a, b); poses.more();) poses.push_next(drive);
+  drive.finish();
+  return drive.choice();
 }
 
 MotionPairing paired(const PairingOptions& options, const Trajectory& a, const Trajectory& b) {

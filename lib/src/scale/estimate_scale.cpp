@@ -11,6 +11,7 @@
 #include "egocal/pairing/motion_pairing.hpp"
 #include "egocal/scale/interpolation_loss.hpp"
 #include "egocal/statistics/median.hpp"
+#include "pairing/single_stride_choice.hpp"
 #include "scale/kept_motions.hpp"
 #include "scale/unjudged_motions.hpp"
 
@@ -78,7 +79,7 @@ std::optional<ScaleSolution> estimate_scale(const Trajectory& a, const Trajector
     const Trajectory scaled_b = side == Side::b ? scaled(b, applied) : b;
     PairingOptions fixed = pairing;
     if (!pairing.stride || !pairing.balance) {
-      const Choice choice = pair_motions(pairing, scaled_a, scaled_b).drive.choice();
+      const Choice choice = detail::single_stride_choice(pairing, scaled_a, scaled_b);
       fixed.stride = choice.stride;
       fixed.balance = choice.balance;
     }
