@@ -6,7 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <ctime>
+#include <vector>
 
 #include "../support/arm_samples.hpp"
 #include "../support/paths.hpp"
@@ -361,6 +364,65 @@ TEST(Samples, RowsBelongTogetherByNearestStampOrElseByOrder) {
   EXPECT_THAT(order.rows_b, ::testing::ElementsAre(0, 1, 2, 3));
   EXPECT_THROW(match_samples(at({0, 1, 2, 3, 4}), at({100, 107, 109, 120})), Error);
   EXPECT_THROW(match_samples({}, {}), Error);
+}
+
+/// A row: its stamp, and the sample that it is of.
+struct Stamped {
+  double seconds = 0;
+  int number = 0;
+};
+Trajectory poses_of(const SimulatedSamples& drawn, Side side, const std::vector<Stamped>& rows) {
+  Trajectory poses;
+  for (const Stamped& row : rows) {
+    const PoseSample& sample = drawn.samples[static_cast<std::size_t>(row.number)];
+    poses.push_back({std::llround(1e6 * row.seconds), side == Side::a ? sample.a : sample.b});
+  }
+  return poses;
+}
+
+// Both lists were equally long, so all rows between the two that are missing were put together wrongly
+TEST(Samples, RowsThatLackAPartnerLeaveTheOthersToTheirStamps) {
+  for (const double clock_b : {0.0, 0.2}) {  // [s]
+    const SimulatedSamples drawn = arm(20, 0, 0, 3);
+    std::vector<Stamped> a, b;
+    for (int i = 0; i < 20; ++i) {
+      if (i != 5) a.push_back({10.0 * i, i});
+      if (i != 13) b.push_back({10.0 * i + clock_b, i});
+    }
+    const MatchedSamples matched = match_samples(poses_of(drawn, Side::a, a), poses_of(drawn, Side::b, b));
+    EXPECT_TRUE(matched.by_stamp);
+    EXPECT_EQ(matched.samples.size(), 18u);
+    EXPECT_EQ(matched.without_partner, 2u);
+    EXPECT_TRUE(wrong_of(calibrate_samples(matched.samples)).empty());
+  }
+}
+
+// One list counts from 0, the other one from 1: nearly all stamps agree, and none belongs together
+TEST(Samples, CountersThatBeginElsewhereAreMatchedByRow) {
+  for (const bool invert : {false, true}) {
+    const SimulatedSamples drawn = arm(12, 0, 0, 4);
+    std::vector<Stamped> a, b;
+    for (int i = 0; i < 12; ++i) {
+      a.push_back({1.0 * i, i});
+      b.push_back({1.0 * i + 1, i});
+    }
+    Trajectory poses_b = poses_of(drawn, Side::b, b);
+    if (invert) poses_b = reread(poses_b, {QuaternionOrder::wxyz, true, 1});
+    EXPECT_FALSE(match_samples(poses_of(drawn, Side::a, a), poses_b).by_stamp);
+  }
+}
+
+// Seven rows of sixteen have a partner by their stamps, and none by their place
+TEST(Samples, FewRowsThatBelongTogetherAreFoundByTheirStamps) {
+  const SimulatedSamples drawn = arm(25, 0, 0, 5);
+  std::vector<Stamped> a, b;
+  for (int i = 0; i < 16; ++i) {
+    a.push_back({10.0 * i, i});
+    b.push_back({10.0 * (i + 9), i + 9});
+  }
+  const MatchedSamples matched = match_samples(poses_of(drawn, Side::a, a), poses_of(drawn, Side::b, b));
+  EXPECT_TRUE(matched.by_stamp);
+  EXPECT_EQ(matched.samples.size(), 7u);
 }
 
 class RealSamples : public ::testing::Test {

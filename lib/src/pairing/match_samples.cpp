@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "egocal/error.hpp"
 #include "egocal/statistics/median.hpp"
@@ -52,6 +54,48 @@ MatchedSamples by_stamp(const Trajectory& a, const Trajectory& b, const Matching
   return matched;
 }
 
+/// Tuning of the choice between stamps and rows, where the lists are equally long and stamps leave rows over.
+/// Study: tests/lib/test_samples.cpp, RowsThatLackAPartner and CountersThatBeginElsewhere.
+struct ChoiceOptions {
+  /// Stamps are believed where more than this part of the rows agrees by them. Those of two clocks that have
+  /// nothing to do with each other agree by chance in a half at most: nearest_part to both sides.
+  double most = 0.5;
+  /// The turn from one sample to another is the same in a and b. Where that holds this many times better by
+  /// rows, or by the stamps of fewer rows, it decides [-].
+  double clearly = 3;
+  double nothing = 1e-6;  ///< difference of turns that is rounding [rad]
+};
+
+double turn_between(const DualQuaternion& from, const DualQuaternion& to) {
+  return 2 * std::acos(std::min(1.0, std::abs(from.real.dot(to.real))));
+}
+
+/// How much turns of a and b differ [rad], the lower quartile: up to 40 % of the samples may be wrong. It is
+/// the same for inverted poses and for quaternions in another order.
+double unlike_turns(const std::vector<PoseSample>& samples) {
+  std::vector<double> differences;
+  const std::size_t n = samples.size();
+  // neighbours may be alike: samples are in an order
+  for (const std::size_t step : {std::size_t{1}, n / 3, n / 2})
+    for (std::size_t i = 0; i + step < n && step > 0; ++i) {
+      const PoseSample &from = samples[i], &to = samples[i + step];
+      differences.push_back(std::abs(turn_between(from.a, to.a) - turn_between(from.b, to.b)));
+    }
+  return detail::order_statistic_in_place(differences, differences.size() / 4);
+}
+
+/// Whether rows that agree by their stamps are the samples, and not all rows in their order.
+bool stamps_decide(const MatchedSamples& stamps, const MatchedSamples& rows,
+                   const ChoiceOptions& options = {}) {
+  if (stamps.samples.size() < 3) return false;
+  const double by_stamps = unlike_turns(stamps.samples) + options.nothing;
+  const double by_rows = unlike_turns(rows.samples) + options.nothing;
+  if (by_rows * options.clearly < by_stamps) return false;
+  if (by_stamps * options.clearly < by_rows) return true;
+  return static_cast<double>(stamps.samples.size()) >
+         options.most * static_cast<double>(rows.samples.size());
+}
+
 MatchedSamples row_by_row(const Trajectory& a, const Trajectory& b) {
   MatchedSamples matched;
   matched.by_stamp = false;
@@ -63,8 +107,7 @@ MatchedSamples row_by_row(const Trajectory& a, const Trajectory& b) {
 double median_turn(const Trajectory& trajectory, std::size_t apart) {
   std::vector<double> turns;
   for (std::size_t i = apart; i < trajectory.size(); ++i)
-    turns.push_back(
-        2 * std::acos(std::min(1.0, std::abs(trajectory[i - apart].pose.real.dot(trajectory[i].pose.real)))));
+    turns.push_back(turn_between(trajectory[i - apart].pose, trajectory[i].pose));
   return detail::median(std::move(turns));
 }
 
@@ -79,8 +122,10 @@ MatchedSamples match_samples(const Trajectory& a, const Trajectory& b, const Mat
   MatchedSamples matched;
   if (!a.empty() && !b.empty()) {
     matched = by_stamp(a, b, options);
-    if (matched.samples.size() < std::min(a.size(), b.size()) && a.size() == b.size())
-      matched = row_by_row(a, b);
+    if (matched.samples.size() < a.size() && a.size() == b.size()) {
+      MatchedSamples rows = row_by_row(a, b);
+      if (!stamps_decide(matched, rows)) matched = std::move(rows);
+    }
   }
   if (matched.samples.size() < 3)
     throw Error("samples: expected at least 3 rows of a and b that belong together, found " +
