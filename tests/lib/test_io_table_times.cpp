@@ -88,14 +88,30 @@ TEST_F(Tables, TimesSinceASensorWasSwitchedOnKeepTheirUnit) {
   // what begins so is as long as milliseconds or microseconds since 1970 and is neither
   for (const std::int64_t begin_s : {0, 3, 1'000, 50'000, 1'700'000, 3'000'000})
     for (const std::int64_t second : {1'000ll, 1'000'000ll, 1'000'000'000ll}) {
+      const int count = begin_s == 1'700'000 ? 240 : 40;  // fewer rows would be still poses of 2023
       std::string rows;
-      for (int i = 0; i < 40; ++i)
+      for (int i = 0; i < count; ++i)
         rows +=
             std::to_string(begin_s * second + i * second / 20) + " " + std::to_string(i) + " 0 0 0 0 0 1\n";
       const Trajectory poses = read(rows).trajectory;
-      ASSERT_EQ(poses.size(), 40u);
+      ASSERT_EQ(poses.size(), static_cast<std::size_t>(count));
       EXPECT_EQ(poses.front().time_us, begin_s * 1'000'000) << second << " a second";
-      EXPECT_EQ(poses.back().time_us, begin_s * 1'000'000 + 1'950'000) << second << " a second";
+      EXPECT_EQ(poses.back().time_us, begin_s * 1'000'000 + (count - 1) * 50'000) << second << " a second";
+    }
+}
+
+/// From 10 s between poses on, seconds were taken for milliseconds, and milliseconds for microseconds.
+TEST_F(Tables, DatesOfStillPosesKeepTheirUnitHoweverRareTheyAre) {
+  for (const std::int64_t second : {1ll, 1'000ll, 1'000'000ll, 1'000'000'000ll})
+    for (const std::int64_t step : {5, 10, 15, 60, 3'000}) {
+      std::string rows;
+      for (std::int64_t i = 0; i < 20; ++i)
+        rows +=
+            std::to_string((1'700'000'000 + i * step) * second) + " " + std::to_string(i) + " 0 0 0 0 0 1\n";
+      const Trajectory poses = read(rows).trajectory;
+      ASSERT_EQ(poses.size(), 20u);
+      EXPECT_EQ(poses.front().time_us, 1'700'000'000'000'000) << second << " a second, " << step << " s";
+      EXPECT_EQ(poses.back().time_us - poses.front().time_us, 19'000'000 * step) << second << " a second";
     }
 }
 

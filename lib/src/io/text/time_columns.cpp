@@ -39,10 +39,20 @@ constexpr TimeUnitName time_units[] = {{TimeUnit::seconds, "seconds", 1},
                                        {TimeUnit::microseconds, "microseconds", 1e-6},
                                        {TimeUnit::nanoseconds, "nanoseconds", 1e-9}};
 
-const TimeUnitName& unit_by_size(std::vector<double> times) {
-  constexpr double earliest = 3e8, latest = 2.5e9;  // limits of dates [s]: 1979, before GPS time, and 2049
-  // limit [s]: no sensor that is worth calibrating sends a pose every ten seconds and less often
-  constexpr double longest_step = 10;
+/// Limits of the times of poses. The cases are those of tests/lib/test_io_table_times.cpp.
+struct TimeLimits {
+  double earliest = 3e8, latest = 2.5e9;  ///< of dates [s]: 1979, before GPS time, and 2049
+  /// No sensor that is worth calibrating sends a pose every ten seconds and less often [s].
+  double longest_step = 10;
+  /// Still poses do come as rarely. Files of at most this many rows may hold them, with dates from 2000 on
+  /// and up to an hour [s] between two. Open: a stream of as few poses at 0.3 to 100 Hz, with times in the
+  /// next smaller unit since a machine was switched on 11 to 29 days ago, has the same numbers. It is taken
+  /// for dates; its poses are then too far apart to be interpolated, and that is an error.
+  std::size_t most_still = 200;
+  double earliest_still = 946'684'800, longest_still = 3600;
+};
+
+const TimeUnitName& unit_by_size(std::vector<double> times, const TimeLimits& limits = {}) {
   // rows may be out of order: the steps are those of the times in order
   std::sort(times.begin(), times.end());
   std::vector<double> steps;
@@ -53,12 +63,16 @@ const TimeUnitName& unit_by_size(std::vector<double> times) {
   for (const double time : times) sizes.push_back(std::abs(time));
   const double size = sizes.empty() ? 0 : median(sizes);  // a single wrong time does not decide
   for (const TimeUnitName& unit : time_units)
-    if (size * unit.in_seconds >= earliest && size * unit.in_seconds <= latest &&
-        typical_step * unit.in_seconds < longest_step)
+    if (size * unit.in_seconds >= limits.earliest && size * unit.in_seconds <= limits.latest &&
+        typical_step * unit.in_seconds < limits.longest_step)
+      return unit;
+  for (const TimeUnitName& unit : time_units)
+    if (times.size() <= limits.most_still && size * unit.in_seconds >= limits.earliest_still &&
+        size * unit.in_seconds <= limits.latest && typical_step * unit.in_seconds <= limits.longest_still)
       return unit;
   // any other time: the unit that puts the step next to 0.06 s, in the middle of 1 kHz and 1 Hz, is the
   // likely one
-  if (!(typical_step >= longest_step)) return time_units[0];
+  if (!(typical_step >= limits.longest_step)) return time_units[0];
   const TimeUnitName* best = &time_units[0];
   for (const TimeUnitName& unit : time_units)
     if (std::abs(std::log(typical_step * unit.in_seconds / 0.06)) <
