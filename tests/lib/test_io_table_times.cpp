@@ -115,6 +115,20 @@ TEST_F(Tables, DatesOfStillPosesKeepTheirUnitHoweverRareTheyAre) {
     }
 }
 
+/// The message was "out of range" alone.
+TEST_F(Tables, AFileOfTimesInAnotherUnitIsRefusedWithTheCure) {
+  ReadOptions options;
+  const std::string rows = "1 0 0 1 0 1 0 2 0 0 1 3\n1 0 0 2 0 1 0 2 0 0 1 3\n";
+  options.times_file = folder_.file("times.txt", "1700000000000\n1700000000100\n");
+  expect_error(rows, "times.txt:1: time: expected seconds, or nanoseconds since 1970, got '1700000000000'",
+               options);
+  expect_error(rows, "milliseconds since 1970: divide the times by 1000", options);
+  options.times_file = folder_.file("times.txt", "1700000000000000\n1700000000100000\n");
+  expect_error(rows, "divide the times by 1000000", options);
+  options.times_file = folder_.file("times.txt", "1700000000000000000\n1700000000100000000\n");
+  EXPECT_EQ(read(rows, options).trajectory[1].time_us, 1'700'000'000'100'000);
+}
+
 TEST_F(Tables, TimesMayBeDatesOfIso8601) {
   const std::string pose = ",1,2,3,0,0,0.7071068,0.7071068\n", next = ",4,5,6,0,0,0.7071068,0.7071068\n";
   expect_two_poses("t,x,y,z,qx,qy,qz,qw\n2001-09-09T01:46:40Z" + pose + "2001-09-09T01:46:40.1Z" + next);

@@ -3,12 +3,30 @@
 #include "io/text/times_file.hpp"
 
 #include <cmath>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "egocal/error.hpp"
 #include "io/text/calendar_time.hpp"
+#include "io/text/layout.hpp"
 #include "io/text/text_rows.hpp"
 
 namespace egocal::detail {
+
+namespace {
+
+/// What a time that is too large for seconds may be, and the cure; empty: anything.
+std::string in_other_unit(double size) {
+  constexpr double earliest = 3e8;  // limit of dates [s]: 1979, before GPS time
+  if (size >= 1e3 * earliest && size <= 1e3 * latest_seconds)
+    return ", as large as milliseconds since 1970: divide the times by 1000";
+  if (size >= 1e6 * earliest && size <= 1e6 * latest_seconds)
+    return ", as large as microseconds since 1970: divide the times by 1000000";
+  return ": give the times in seconds";
+}
+
+}  // namespace
 
 std::vector<std::int64_t> read_times_file(const std::string& file) {
   ByteSource source(file);
@@ -28,7 +46,13 @@ std::vector<std::int64_t> read_times_file(const std::string& file) {
       throw error_at(file, lines.number(), "",
                      "expected one time, got " + std::to_string(fields.size()) + " fields");
     double size = 0;
-    const bool epoch_ns = parse_number(text, size) && std::abs(size) > 4.1e15;
+    const bool is_number = parse_number(text, size);
+    constexpr double least_ns = 4.1e15;  // limit of dates: microseconds of 2100
+    const bool epoch_ns = is_number && std::abs(size) > least_ns;
+    if (is_number && !epoch_ns && std::abs(size) > latest_seconds)
+      throw error_at(
+          file, lines.number(), "time",
+          "expected seconds, or nanoseconds since 1970, got " + quoted(text) + in_other_unit(std::abs(size)));
     times.push_back(
         time_us(file, lines.number(), text, epoch_ns ? TimeUnit::nanoseconds : TimeUnit::seconds));
   }
