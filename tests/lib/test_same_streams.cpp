@@ -126,6 +126,25 @@ TEST(SameStreams, RotationsThatWereMadeFromTheOthersAreNamed) {
       << finding->message;
 }
 
+/// By a wrong extrinsic, beside positions in a world of their own: axes explain that, and leave the rotation
+/// that was put in.
+TEST(SameStreams, RotationsThatWereMadeComeBeforeTheAxesThatTheyLookLike) {
+  const testing::Streams right = drive(Terrain::rough);
+  ASSERT_EQ(right.a.size(), right.b.size());
+  const Rotation put_in = to_pose(right.T).rotation * rotation_exp({0.03, -0.04, 0.03});
+  const Pose other_world{rotation_exp({0, 0, 2}), {3, -2, 1}};
+  Trajectory made = right.b;
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    const Pose position = other_world * to_pose(right.b[i].pose);
+    made[i].pose = canonical_sign(
+        to_dual_quaternion(Pose{Rotation(to_pose(right.a[i].pose).rotation * put_in), position.translation}));
+  }
+  const Calibration calibration = calibrate(right.a, made);
+  ASSERT_FALSE(calibration.findings.empty());
+  EXPECT_EQ(calibration.findings.front().code, "same_stream") << calibration.findings.front().message;
+  EXPECT_EQ(calibration.verdict, Verdict::contradictory);
+}
+
 /// The odometry, and the pose in a map that corrects it each four seconds: where the odometry stands or goes
 /// straight on the map does not, which is no gap that was filled in.
 TEST(SameStreams, APoseInAMapAndTheOdometryThatItWasMadeFromAreNamed) {

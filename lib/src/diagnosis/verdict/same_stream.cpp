@@ -55,6 +55,18 @@ std::optional<Finding> made_stream(const Evidence& evidence, const Fit& fit,
   return rotations;
 }
 
+/// Rotations that were made from the other stream's by a wrong extrinsic, beside positions of another world,
+/// look like axes. That they were made comes first: with the axes corrected, the answer is what was put in.
+void name_copied_rotations_of_axes(const Evidence& evidence, std::vector<Finding>& findings) {
+  const CopiedRotationsOptions copied;
+  for (const Finding& finding : findings)
+    if (finding.improvement > copied.without_noise) return;
+  const Streams& streams = evidence.streams;
+  if (std::optional<Finding> rotations =
+          copied_rotations(streams.a, streams.b, evidence.clock, streams.max_gap))
+    findings.insert(findings.begin(), *std::move(rotations));
+}
+
 }  // namespace
 
 void name_same_stream(const Evidence& evidence, const Answered& answered, const DiagnosisOptions& options,
@@ -74,7 +86,10 @@ void name_same_stream(const Evidence& evidence, const Answered& answered, const 
       findings.push_back(*std::move(positions));
       return;
     }
-  if (std::any_of(findings.begin(), findings.end(), explains)) return;
+  if (std::any_of(findings.begin(), findings.end(), explains)) {
+    name_copied_rotations_of_axes(evidence, findings);
+    return;
+  }
   if (std::optional<Finding> made = made_stream(evidence, result.fit, to_rounding, findings)) {
     findings.push_back(*std::move(made));
     return;
