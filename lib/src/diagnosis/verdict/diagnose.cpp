@@ -25,6 +25,7 @@
 #include "diagnosis/explanations/times/late_positions.hpp"
 #include "diagnosis/explanations/times/late_rotations.hpp"
 #include "diagnosis/explanations/times/late_turning.hpp"
+#include "diagnosis/explanations/times/smoothed_rotations.hpp"
 #include "diagnosis/motions/answer_change.hpp"
 #include "diagnosis/motions/fit.hpp"
 #include "diagnosis/motions/standing_still.hpp"
@@ -156,6 +157,7 @@ void add_what_is_beside(const Foreseen& foreseen, const DiagnosisOptions& option
   name_small_scale(evidence, options, answered, result);
   if (pairing.mode != Mode::planar) {
     name_late_rotations(evidence, pairing.max_gap, options, wrong_stream, result.findings);
+    name_smoothed_rotations(evidence, pairing.max_gap, options, answered, result);
     widen_by_late_column(wrong_stream.late_column(), answered, result);
     name_early_rotations(evidence, options, answered, result);
     name_late_turning(evidence, options, answered, result);

@@ -19,22 +19,6 @@ namespace egocal::detail {
 
 namespace {
 
-struct OnClock {
-  Instants instants;
-  Explained explained;  ///< no motions: none was found
-};
-
-OnClock on_clock(const Evidence& evidence, double offset, double max_gap, const DiagnosisOptions& options) {
-  OnClock result;
-  result.instants =
-      synchronised(evidence.streams.a, evidence.streams.b, {offset, 0, 0}, max_gap, 1, options.motions);
-  result.explained.motions =
-      motions_of(result.instants, {}, {}, evidence.stride, options.motions.most, options.motions);
-  if (!result.explained.motions.all.empty())
-    result.explained.fit = robust_fit(result.explained.motions, options.fit);
-  return result;
-}
-
 /// Late positions of either stream at this clock; empty: none that are certain. Filters delay: the likelier
 /// stream is the one whose rotations are behind those of the other one.
 std::optional<LateOfEither> late_of_either(const OnClock& clock, Side behind,
@@ -83,6 +67,17 @@ std::vector<Finding> between_two_clocks(const Evidence& evidence, double max_gap
 }
 
 }  // namespace
+
+OnClock on_clock(const Evidence& evidence, double offset, double max_gap, const DiagnosisOptions& options) {
+  OnClock result;
+  result.instants =
+      synchronised(evidence.streams.a, evidence.streams.b, {offset, 0, 0}, max_gap, 1, options.motions);
+  result.explained.motions =
+      motions_of(result.instants, {}, {}, evidence.stride, options.motions.most, options.motions);
+  if (!result.explained.motions.all.empty())
+    result.explained.fit = robust_fit(result.explained.motions, options.fit);
+  return result;
+}
 
 void name_late_rotations(const Evidence& evidence, double max_gap, const DiagnosisOptions& options,
                          WrongStream& wrong, std::vector<Finding>& findings,

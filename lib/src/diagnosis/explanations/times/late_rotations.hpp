@@ -19,6 +19,15 @@ struct LateRotationsOptions {
   double widest = 0.5;      ///< that offset at most [s]
 };
 
+/// The drive on another clock.
+struct OnClock {
+  Instants instants;
+  Explained explained;  ///< no motions: none was found
+};
+
+/// The drive with another time offset [s]. max_gap: of interpolation [s].
+OnClock on_clock(const Evidence& evidence, double offset, double max_gap, const DiagnosisOptions& options);
+
 /// Where rotations alone are late, the clock that suits them is wrong for the positions: late_positions_a or
 /// _b is added after a certain clock_offset, and both have the answer that suits both. An offset that was
 /// estimated from both is a compromise, at which neither seems to be late by much: late_positions_a or _b is
