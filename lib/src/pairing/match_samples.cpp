@@ -92,8 +92,7 @@ bool stamps_decide(const MatchedSamples& stamps, const MatchedSamples& rows,
   const double by_rows = unlike_turns(rows.samples) + options.nothing;
   if (by_rows * options.clearly < by_stamps) return false;
   if (by_stamps * options.clearly < by_rows) return true;
-  return static_cast<double>(stamps.samples.size()) >
-         options.most * static_cast<double>(rows.samples.size());
+  return static_cast<double>(stamps.samples.size()) > options.most * static_cast<double>(rows.samples.size());
 }
 
 MatchedSamples row_by_row(const Trajectory& a, const Trajectory& b) {
