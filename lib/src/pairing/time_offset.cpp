@@ -210,7 +210,8 @@ struct TimeOffsetSearch::Impl {
                        to = std::min(b.poses.back().time_us, a.poses.back().time_us - offset_us);
     if (to <= from) return;
     ClockLine model;
-    model.at_b_us = rate != 0 ? begin_b + to_microseconds(parts->middle()) : from + (to - from) / 2;
+    model.at_b_us =
+        rate != 0 ? begin_b + static_cast<std::int64_t>(parts->middle() * second_us) : from + (to - from) / 2;
     model.at_a_us = model.at_b_us + offset_us;
     model.rate = rate;
     refinement.emplace(a.poses, b.poses, options, max_gap_us, schedule, [this] { compare_candidates(); });

@@ -3,10 +3,10 @@
 #include "pairing/offset/lasting_jumps.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "egocal/geometry/pose.hpp"
-#include "egocal/microseconds.hpp"
 #include "egocal/motions/instant.hpp"
 #include "egocal/statistics/median.hpp"
 
@@ -22,7 +22,7 @@ struct Step {
 
 Step step_from(const Trajectory& trajectory, std::size_t i) {
   const Pose motion = to_pose(motion_between(trajectory[i].pose, trajectory[i + 1].pose));
-  const double seconds = to_seconds(trajectory[i + 1].time_us - trajectory[i].time_us);
+  const double seconds = static_cast<double>(trajectory[i + 1].time_us - trajectory[i].time_us) / 1e6;
   return {seconds, rotation_log(motion.rotation) / seconds, motion.translation / seconds};
 }
 
