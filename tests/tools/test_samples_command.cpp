@@ -6,11 +6,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
+#include <iomanip>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
 #include <vector>
 
 #include "egocal/io/trajectory_file.hpp"
+#include "egocal/io/whole_file.hpp"
 #include "support/arm_samples.hpp"
 #include "support/file_content.hpp"
 #include "support/paths.hpp"
@@ -57,6 +63,16 @@ class SamplesCommand : public ::testing::Test {
     write_tum(folder.path("hand.tum"), hand);
     write_tum(folder.path("eye.tum"), eye);
     return drawn;
+  }
+
+  static std::string row(double seconds, const DualQuaternion& pose) {
+    const Pose at = to_pose(pose);
+    std::ostringstream text;
+    text << std::setprecision(17) << seconds;
+    for (const double value : {at.translation.x(), at.translation.y(), at.translation.z(), at.rotation.x(),
+                               at.rotation.y(), at.rotation.z(), at.rotation.w()})
+      text << ' ' << value;
+    return text.str() + "\n";
   }
 
   testing::ScratchFolder folder;
@@ -116,6 +132,92 @@ TEST_F(SamplesCommand, AReportSaysOfSamplesWhatSolvePrints) {
   EXPECT_NE(page.find("wrong, not used"), std::string::npos);
   for (const char* of_streams : {"residuals of motions", "0 of a", "time offset"})
     EXPECT_EQ(page.find(of_streams), std::string::npos) << of_streams;
+}
+
+// Rows were counted after those without a pose were skipped and the others sorted: another image was named
+TEST_F(SamplesCommand, RowsAreThoseOfTheFile) {
+  const testing::SimulatedSamples drawn = write(false, 12, 1);
+  std::string hand = "# time x y z qx qy qz qw\n", eye = hand;
+  for (std::size_t i = 12; i-- > 0;) {  // the first in time, which is wrong, is the last row
+    hand += row(100 + 10.0 * static_cast<double>(i), drawn.samples[i].a);
+    if (i == 9) hand += "\n# taken again\n95 0 0 0 0 0 0 0\n";
+    if (i != 4) eye += row(100 + 10.0 * static_cast<double>(i), drawn.samples[i].b);
+  }
+  write_whole_file(folder.path("hand.tum"), hand);
+  write_whole_file(folder.path("eye.tum"), eye);
+  const nlohmann::json json = nlohmann::json::parse(solve("--samples --json").out);
+  EXPECT_EQ(json["samples"]["wrong"], nlohmann::json::array({13}));
+  EXPECT_EQ(json["samples"]["residuals"][0]["row"], 13);
+  EXPECT_EQ(json["samples"]["residuals"][0]["row_b"], 11);
+  EXPECT_EQ(json["samples"]["residuals"][10]["row"], 1);
+  EXPECT_EQ(json["samples"]["residuals"][10]["row_b"], 1);
+  const std::string text = solve("--samples").out;
+  EXPECT_NE(text.find("samples       11, 1 wrong and not used: row 13 (11 of b)\n"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("1 of 11 samples contradict the others and do not count: row 13 (11 of b)."),
+            std::string::npos)
+      << text;
+}
+
+// A row without a pose moved all behind it to the next one of the other list
+TEST_F(SamplesCommand, ARowWithoutAPoseKeepsItsPlace) {
+  const testing::SimulatedSamples drawn = write(false, 12, 0);
+  std::string hand, eye;
+  for (std::size_t i = 0; i < 12; ++i) {
+    hand +=
+        i == 7 ? "nan nan nan nan nan nan nan nan\n" : row(10.0 * static_cast<double>(i), drawn.samples[i].a);
+    eye += i == 2 ? "nan nan nan nan nan nan nan nan\n"
+                  : row(1e5 + static_cast<double>(i * i), drawn.samples[i].b);
+  }
+  write_whole_file(folder.path("hand.tum"), hand);
+  write_whole_file(folder.path("eye.tum"), eye);
+  const nlohmann::json json = nlohmann::json::parse(solve("--samples --json").out);
+  EXPECT_EQ(json["samples"]["matched_by"], "row");
+  EXPECT_EQ(json["samples"]["count"], 10);
+  EXPECT_EQ(json["samples"]["without_partner"], 2);
+  EXPECT_EQ(json["samples"]["wrong"], nlohmann::json::array());
+  EXPECT_EQ(json["verdict"], "good");
+}
+
+// "give equally many rows": both files had twelve
+TEST_F(SamplesCommand, EqualStampsAreMatchedByRow) {
+  const testing::SimulatedSamples drawn = write(false, 12, 0);
+  for (const double step : {0.0, 0.5}) {  // all alike, and two each of whole seconds
+    std::string hand, eye;
+    for (std::size_t i = 0; i < 12; ++i) {
+      hand += row(std::floor(step * static_cast<double>(i)), drawn.samples[i].a);
+      eye += row(std::floor(step * static_cast<double>(i)), drawn.samples[i].b);
+    }
+    write_whole_file(folder.path("hand.tum"), hand);
+    write_whole_file(folder.path("eye.tum"), eye);
+    const Result result = solve("--samples --json");
+    ASSERT_EQ(result.code, 0) << result.error;
+    const nlohmann::json json = nlohmann::json::parse(result.out);
+    EXPECT_EQ(json["samples"]["count"], 12);
+    EXPECT_EQ(json["samples"]["matched_by"], "row");
+    EXPECT_NE(result.error.find("stamps are equal: row i of a belongs to row i of b\n"), std::string::npos)
+        << result.error;
+  }
+}
+
+// From 10 s between poses on one file was read as seconds, the other one as milliseconds
+TEST_F(SamplesCommand, TimesOfBothFilesAreReadInOneUnit) {
+  const testing::SimulatedSamples drawn = write(false, 20, 0);
+  for (const double first : {0.0, 1.7e9}) {
+    std::string hand, eye;
+    for (std::size_t i = 0; i < 20; ++i) {
+      const double time = first + 9.5 * static_cast<double>(i);
+      hand += row(time, drawn.samples[i].a);
+      if (i < 5 || i % 2 == 0) eye += row(time, drawn.samples[i].b);
+    }
+    write_whole_file(folder.path("hand.tum"), hand);
+    write_whole_file(folder.path("eye.tum"), eye);
+    const Result result = solve("--samples --json");
+    ASSERT_EQ(result.code, 0) << first << ": " << result.error;
+    const nlohmann::json json = nlohmann::json::parse(result.out);
+    EXPECT_EQ(json["samples"]["count"], 12) << first;
+    EXPECT_EQ(json["samples"]["matched_by"], "stamp") << first;
+  }
 }
 
 TEST_F(SamplesCommand, TheCureOfEyeToHandIsToLeaveItOut) {

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <utility>
 
 #include "egocal/error.hpp"
+#include "egocal/in_words.hpp"
+#include "egocal/io/poses_of_file.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/printable.hpp"
 #include "io/static_transform.hpp"
@@ -17,8 +20,23 @@ namespace egocal {
 
 namespace {
 
+/// Where poses are put, in the order of the file, and their rows where they are asked for.
+struct Taken {
+  Trajectory& poses;
+  std::vector<std::size_t>* rows;
+
+  void add(const StampedPose& pose, const ReadLosses& losses_so_far) {
+    if (rows) rows->push_back(poses.size() + losses_so_far.refused);
+    poses.push_back(pose);
+  }
+  void clear() {
+    poses.clear();
+    if (rows) rows->clear();
+  }
+};
+
 /// The poses of one stream, in the order of the file. A colon may be part of its name.
-void read_stream(Recording& recording, const std::string& topic, TrajectoryReading& reading) {
+void read_stream(Recording& recording, const std::string& topic, Taken taken) {
   std::vector<signed char> wanted;  // by stream; -1: not looked at yet
   recording.read(topic, [&](std::size_t stream, const StampedPose& pose) {
     if (stream >= wanted.size()) wanted.resize(stream + 1, -1);
@@ -26,7 +44,7 @@ void read_stream(Recording& recording, const std::string& topic, TrajectoryReadi
       const RecordedStream& from = recording.streams()[stream];
       wanted[stream] = from.name == topic && !from.fixed ? 1 : 0;
     }
-    if (wanted[stream] == 1) reading.trajectory.push_back(pose);
+    if (wanted[stream] == 1) taken.add(pose, recording.losses());
   });
 }
 
@@ -128,6 +146,69 @@ Error no_pose(const Recording& recording, const std::string& name) {
                       (recording.losses().any() ? "; " + losses_in_words(recording.losses()) : ""));
 }
 
+/// The poses of a stream in order. as_given: where not null, also those of the file; what was sorted and left
+/// away is then not among the notes.
+TrajectoryReading read_poses(Recording& recording, const std::string& topic, PosesOfFile* as_given) {
+  TrajectoryReading reading;
+  Taken taken{reading.trajectory, as_given ? &as_given->rows : nullptr};
+  std::string name = topic;
+  bool looked = false;
+  if (name.empty()) {
+    // the only stream with poses, where there is only one
+    std::size_t first = SIZE_MAX;
+    bool several = false;
+    recording.read("", [&](std::size_t stream, const StampedPose& pose) {
+      if (recording.streams()[stream].fixed) return;
+      several = several || (first != SIZE_MAX && first != stream);
+      first = std::min(first, stream);
+      if (several)
+        taken.clear();
+      else
+        taken.add(pose, recording.losses());
+    });
+    looked = true;
+    if (several)
+      throw error_at(recording.file(), 0, "",
+                     "holds several streams, choose one with " + printable(recording.file()) + ":TOPIC; " +
+                         detail::topics_in_words(recording.streams()));
+    if (first != SIZE_MAX) name = recording.streams()[first].name;
+  } else {
+    read_stream(recording, name, taken);
+    if (reading.trajectory.empty()) {
+      name = full_name(recording.streams(), topic);
+      if (name != topic) read_stream(recording, name, taken);
+    }
+  }
+  const auto is_asked = [&](const RecordedStream& stream) { return stream.topic == name; };
+  const std::vector<RecordedStream>& streams = recording.streams();
+  const bool topic_with_colon = std::any_of(streams.begin(), streams.end(), is_asked);
+  if (reading.trajectory.empty() && !looked && !topic_with_colon && name.find(':') != std::string::npos)
+    read_chain(recording, name, reading);
+  reading.losses = recording.losses();
+  if (reading.trajectory.empty()) throw no_pose(recording, name);
+  reading.format = recording.format();
+  reading.has_scale = recording.has_scale();
+  reading.stream = name;
+  if (as_given) {
+    if (as_given->rows.size() != reading.trajectory.size())
+      as_given->rows = as_rows(reading.trajectory).rows;  // of a chain
+    as_given->poses = reading.trajectory;
+    as_given->count = reading.trajectory.size() + reading.losses.refused;
+  }
+  put_in_order(reading);
+  for (const RecordedStream& stream : recording.streams())
+    if (stream.name == name && !stream.mixed.empty())
+      reading.contradictions.push_back(printable(name) + ": " + stream.mixed);
+  if (std::string mixed = mixed_types(streams, name); !mixed.empty())
+    reading.contradictions.push_back(std::move(mixed));
+  reading.notes.insert(reading.notes.begin(), recording.notes().begin(), recording.notes().end());
+  reading.notes.insert(reading.notes.end(), reading.contradictions.begin(), reading.contradictions.end());
+  if (!as_given)
+    for (std::string& repair : repairs_in_words(reading)) reading.notes.push_back(std::move(repair));
+  if (reading.losses.any()) reading.notes.push_back(losses_in_words(reading.losses));
+  return reading;
+}
+
 }  // namespace
 
 void put_in_order(TrajectoryReading& reading) {
@@ -164,63 +245,23 @@ void refuse_repairs(const std::string& name, const TrajectoryReading& reading) {
 }
 
 TrajectoryReading read_trajectory_of(Recording& recording, const std::string& topic) {
-  TrajectoryReading reading;
-  std::string name = topic;
-  bool looked = false;
-  if (name.empty()) {
-    // the only stream with poses, where there is only one
-    std::size_t first = SIZE_MAX;
-    bool several = false;
-    recording.read("", [&](std::size_t stream, const StampedPose& pose) {
-      if (recording.streams()[stream].fixed) return;
-      several = several || (first != SIZE_MAX && first != stream);
-      first = std::min(first, stream);
-      if (several)
-        reading.trajectory.clear();
-      else
-        reading.trajectory.push_back(pose);
-    });
-    looked = true;
-    if (several)
-      throw error_at(recording.file(), 0, "",
-                     "holds several streams, choose one with " + printable(recording.file()) + ":TOPIC; " +
-                         detail::topics_in_words(recording.streams()));
-    if (first != SIZE_MAX) name = recording.streams()[first].name;
-  } else {
-    read_stream(recording, name, reading);
-    if (reading.trajectory.empty()) {
-      name = full_name(recording.streams(), topic);
-      if (name != topic) read_stream(recording, name, reading);
-    }
-  }
-  const auto is_asked = [&](const RecordedStream& stream) { return stream.topic == name; };
-  const std::vector<RecordedStream>& streams = recording.streams();
-  const bool topic_with_colon = std::any_of(streams.begin(), streams.end(), is_asked);
-  if (reading.trajectory.empty() && !looked && !topic_with_colon && name.find(':') != std::string::npos)
-    read_chain(recording, name, reading);
-  reading.losses = recording.losses();
-  if (reading.trajectory.empty()) throw no_pose(recording, name);
-  reading.format = recording.format();
-  reading.has_scale = recording.has_scale();
-  reading.stream = name;
-  put_in_order(reading);
-  for (const RecordedStream& stream : recording.streams())
-    if (stream.name == name && !stream.mixed.empty())
-      reading.contradictions.push_back(printable(name) + ": " + stream.mixed);
-  if (std::string mixed = mixed_types(streams, name); !mixed.empty())
-    reading.contradictions.push_back(std::move(mixed));
-  reading.notes.insert(reading.notes.begin(), recording.notes().begin(), recording.notes().end());
-  reading.notes.insert(reading.notes.end(), reading.contradictions.begin(), reading.contradictions.end());
+  return read_poses(recording, topic, nullptr);
+}
+
+TrajectoryReading read_trajectory_of(Recording& recording, const std::string& topic, PosesOfFile& as_given) {
+  as_given = {};
+  return read_poses(recording, topic, &as_given);
+}
+
+std::vector<std::string> repairs_in_words(const TrajectoryReading& reading) {
+  std::vector<std::string> repairs;
   if (reading.out_of_order > 0)
-    reading.notes.push_back(std::to_string(reading.out_of_order) +
-                            (reading.out_of_order == 1 ? " pose was" : " poses were") +
-                            " out of order: sorted by time");
+    repairs.push_back(counted(reading.out_of_order, "pose") + (reading.out_of_order == 1 ? " was" : " were") +
+                      " out of order: sorted by time");
   if (reading.duplicates > 0)
-    reading.notes.push_back(std::to_string(reading.duplicates) +
-                            (reading.duplicates == 1 ? " pose has" : " poses have") +
-                            " the time of another one: the first of each is kept");
-  if (reading.losses.any()) reading.notes.push_back(losses_in_words(reading.losses));
-  return reading;
+    repairs.push_back(counted(reading.duplicates, "pose") + (reading.duplicates == 1 ? " has" : " have") +
+                      " the time of another one: the first of each is kept");
+  return repairs;
 }
 
 TrajectoryReading read_trajectory_file(const std::string& name, const ReadOptions& options) {

@@ -16,6 +16,7 @@
 #include "diagnosis/words/wording.hpp"
 #include "egocal/error.hpp"
 #include "egocal/in_words.hpp"
+#include "egocal/samples/named_samples.hpp"
 #include "egocal/statistics/median.hpp"
 #include "egocal/uncertainty/observability.hpp"
 #include "samples/agreeing.hpp"
@@ -134,18 +135,20 @@ struct Judged {
   const std::vector<PoseSample>& samples;
   const SampleSet& set;
   const AgreeingSamples& agreeing;
-  std::vector<std::size_t> order, rows;  ///< in the order given, the first of those that repeat each other
+  std::vector<std::size_t> order, given;  ///< in the order given, the first of those that repeat each other
+  const SampleNames& names;
 };
 
-Judged judged(const DistinctSamples& distinct, const SampleSet& set, const AgreeingSamples& agreeing) {
-  Judged result{distinct.samples, set, agreeing, {}, {}};
+Judged judged(const DistinctSamples& distinct, const SampleSet& set, const AgreeingSamples& agreeing,
+              const SampleNames& names) {
+  Judged result{distinct.samples, set, agreeing, {}, {}, names};
   std::vector<bool> met(distinct.samples.size(), false);
   for (std::size_t row = 0; row < distinct.places.size(); ++row) {
     const std::size_t i = distinct.places[row];
     if (met[i]) continue;
     met[i] = true;
     result.order.push_back(i);
-    result.rows.push_back(row);
+    result.given.push_back(row);
   }
   return result;
 }
@@ -160,13 +163,13 @@ std::vector<Finding> explanations(const Judged& judged, bool agree, const Sample
     return finding.code == "scale" && !finding.certain;
   });
   if (may_slip) {
-    std::optional<Finding> slip = find_slip(judged.set, judged.agreeing, judged.order, judged.rows,
-                                            options.diagnosis.unit == LengthUnit::metres);
+    std::optional<Finding> slip = find_slip(judged.set, judged.agreeing, judged.order, judged.given,
+                                            judged.names, options.diagnosis.unit == LengthUnit::metres);
     // a linear test gives the answer after a large slip to centimetres only
     const bool large = largest_noise(judged.set, judged.agreeing.fit.noise) > LargeSlipOptions().least_noise;
     if (!slip || large)
       if (std::optional<Finding> found =
-              find_large_slip(judged.set, judged.agreeing, judged.order, judged.rows, options))
+              find_large_slip(judged.set, judged.agreeing, judged.order, judged.given, judged.names, options))
         slip = std::move(found);
     add(std::move(slip));
   }
@@ -231,7 +234,8 @@ void judge_samples(const Judged& judged, const SampleOptions& options, Calibrati
 
 }  // namespace
 
-SampleCalibration calibrate_samples(std::span<const PoseSample> given, const SampleOptions& options) {
+SampleCalibration calibrate_named_samples(std::span<const PoseSample> given, const SampleOptions& options,
+                                          const SampleNames& names) {
   require_usable(given);
   const DistinctSamples distinct_samples = distinct(detail::reread(given, options.read_a, options.read_b));
   const auto& [samples, places] = distinct_samples;
@@ -271,15 +275,27 @@ SampleCalibration calibrate_samples(std::span<const PoseSample> given, const Sam
   measure_spread(set, agreeing, places, result);
   for (const SampleResidual& residual : result.residuals)
     ++(residual.wrong ? calibration.counts.outliers : calibration.counts.matched);
-  judge_samples(judged(distinct_samples, set, agreeing), options, calibration);
+  judge_samples(judged(distinct_samples, set, agreeing, names), options, calibration);
   // under another reading other samples are wrong; a slip leaves them what they are
   const auto& findings = calibration.findings;
   const bool misread = calibration.verdict == Verdict::contradictory &&
                        std::any_of(findings.begin(), findings.end(),
                                    [](const Finding& one) { return one.code != "mount_moved"; });
   if (calibration.counts.outliers > 0 && !misread)
-    calibration.findings.push_back(wrong_samples(result.residuals));
+    calibration.findings.push_back(wrong_samples(result.residuals, names));
   return result;
+}
+
+SampleCalibration calibrate_samples(std::span<const PoseSample> samples, const SampleOptions& options) {
+  return calibrate_named_samples(samples, options, {});
+}
+
+std::string name_of(const SampleNames& names, std::size_t sample) {
+  return sample < names.of.size() ? names.of[sample] : std::to_string(sample + 1);
+}
+
+std::string full_name_of(const SampleNames& names, std::size_t sample) {
+  return (names.kind.empty() ? "sample" : names.kind) + " " + name_of(names, sample);
 }
 
 }  // namespace egocal

@@ -78,19 +78,21 @@ bool given_twice(const SampleSet& set, std::span<const PoseSample> samples) {
   return all_alike(false) || all_alike(true);
 }
 
-Finding wrong_samples(const std::vector<SampleResidual>& residuals) {
+Finding wrong_samples(const std::vector<SampleResidual>& residuals, const SampleNames& names) {
   Finding finding;
   finding.code = "wrong_samples";
   finding.certain = true;
-  std::string rows;
+  std::string named;
+  constexpr std::size_t longest = 200;  // limit of what people read
   std::size_t count = 0;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     if (!residuals[i].wrong) continue;
     ++count;
-    if (rows.size() < 200) rows += (rows.empty() ? "" : ", ") + std::to_string(i + 1);
+    if (named.size() < longest) named += (named.empty() ? "" : ", ") + name_of(names, i);
   }
-  finding.message = format("%zu of %zu samples contradict the others and do not count: %s.", count,
-                           residuals.size(), rows.c_str());
+  const std::string kind = names.kind.empty() ? "" : names.kind + (count == 1 ? " " : "s ");
+  finding.message = format("%zu of %zu samples contradict the others and do not count: %s%s.", count,
+                           residuals.size(), kind.c_str(), named.c_str());
   finding.remedy = "Check these poses: a target detected wrongly, or a robot pose of another moment.";
   return finding;
 }

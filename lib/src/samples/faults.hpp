@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "egocal/samples/named_samples.hpp"
 #include "samples/sample_fit.hpp"
 
 namespace egocal::detail {
@@ -55,6 +56,6 @@ bool agree_badly(const SampleSet& set, const SampleNoise& noise, const ChanceOpt
 bool given_twice(const SampleSet& set, std::span<const PoseSample> samples);
 
 /// Finding wrong_samples, of those that were rejected.
-Finding wrong_samples(const std::vector<SampleResidual>& residuals);
+Finding wrong_samples(const std::vector<SampleResidual>& residuals, const SampleNames& names);
 
 }  // namespace egocal::detail

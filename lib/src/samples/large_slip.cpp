@@ -70,13 +70,14 @@ Division best_division(const SampleSet& set, const SampleFit& all, const std::ve
   return best;
 }
 
-Finding worded(const SampleSet& set, const Division& division, std::size_t row, bool metres, bool certain) {
+Finding worded(const SampleSet& set, const Division& division, std::size_t given, const SampleNames& names,
+               bool metres, bool certain) {
   const Change of_camera = change_of(division.before.X, division.after.X),
                of_target = change_of(division.before.Y, division.after.Y);
   const bool target = of_target.size(set.length()) > of_camera.size(set.length());
   const Change& change = target ? of_target : of_camera;
-  return worded_slip({row, target, change.shift, change.turn, division.gain, to_pose(division.after.X)},
-                     metres, certain);
+  return worded_slip({given, target, change.shift, change.turn, division.gain, to_pose(division.after.X)},
+                     names, metres, certain);
 }
 
 /// Where the samples that count end, or begin, and no other one lies beyond; 0: nowhere.
@@ -96,7 +97,7 @@ std::size_t where_all_are_rejected(const std::vector<std::size_t>& chosen,
 
 std::optional<Finding> rejected_from_a_row_on(const SampleSet& set, const AgreeingSamples& agreeing,
                                               const std::vector<std::size_t>& order,
-                                              const std::vector<std::size_t>& rows,
+                                              const std::vector<std::size_t>& given, const SampleNames& names,
                                               const SampleOptions& options, const LargeSlipOptions& tuning) {
   const std::size_t at = where_all_are_rejected(agreeing.chosen, order);
   if (at == 0) return std::nullopt;
@@ -104,22 +105,23 @@ std::optional<Finding> rejected_from_a_row_on(const SampleSet& set, const Agreei
   const Division division =
       divided(set, fit_samples(set, all_of(set), settings), order, at, settings, tuning);
   if (!(division.gain > tuning.least_gain_of_rejected)) return std::nullopt;
-  return worded(set, division, rows[at], options.diagnosis.unit == LengthUnit::metres, true);
+  return worded(set, division, given[at], names, options.diagnosis.unit == LengthUnit::metres, true);
 }
 
 }  // namespace
 
 std::optional<Finding> find_large_slip(const SampleSet& set, const AgreeingSamples& agreeing,
                                        const std::vector<std::size_t>& order,
-                                       const std::vector<std::size_t>& rows, const SampleOptions& options,
-                                       const LargeSlipOptions& tuning) {
+                                       const std::vector<std::size_t>& given, const SampleNames& names,
+                                       const SampleOptions& options, const LargeSlipOptions& tuning) {
   if (set.units() < 2 * tuning.least_part) return std::nullopt;
-  if (std::optional<Finding> found = rejected_from_a_row_on(set, agreeing, order, rows, options, tuning))
+  if (std::optional<Finding> found =
+          rejected_from_a_row_on(set, agreeing, order, given, names, options, tuning))
     return found;
   if (!(largest_noise(set, agreeing.fit.noise) > tuning.least_noise)) return std::nullopt;
   const Division division = best_division(set, agreeing.fit, order, settings_of(options), tuning);
   if (!(division.gain > tuning.least_gain)) return std::nullopt;
-  return worded(set, division, rows[division.at], options.diagnosis.unit == LengthUnit::metres,
+  return worded(set, division, given[division.at], names, options.diagnosis.unit == LengthUnit::metres,
                 division.gain > tuning.certain_gain);
 }
 

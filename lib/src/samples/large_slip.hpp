@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "egocal/diagnosis/verdict.hpp"
+#include "egocal/samples/named_samples.hpp"
 #include "samples/agreeing.hpp"
 
 namespace egocal::detail {
@@ -32,10 +33,10 @@ struct LargeSlipOptions {
 };
 
 /// Finding mount_moved: the samples before some row and from it on agree among themselves, with two places of
-/// the camera or of the target. order, rows, metres: as of find_slip(). T_a_b: the answer after the slip.
+/// the camera or of the target. order, given, names: as of find_slip(). T_a_b: the answer after the slip.
 std::optional<Finding> find_large_slip(const SampleSet& set, const AgreeingSamples& agreeing,
                                        const std::vector<std::size_t>& order,
-                                       const std::vector<std::size_t>& rows, const SampleOptions& options,
-                                       const LargeSlipOptions& tuning = {});
+                                       const std::vector<std::size_t>& given, const SampleNames& names,
+                                       const SampleOptions& options, const LargeSlipOptions& tuning = {});
 
 }  // namespace egocal::detail

@@ -61,12 +61,12 @@ Normal normal_of(const SampleSet& set, std::size_t i, const SampleFit& fit, doub
 /// The units of some samples, in the order of their first ones, and their normal equations.
 struct PlacedUnit {
   std::size_t first = 0;  ///< sample
-  std::size_t row = 0;
+  std::size_t given = 0;  ///< place among the samples given
   Normal normal;
 };
 std::vector<PlacedUnit> units_in(const SampleSet& set, const std::vector<bool>& counts, const SampleFit& fit,
                                  const std::vector<std::size_t>& order,
-                                 const std::vector<std::size_t>& rows) {
+                                 const std::vector<std::size_t>& given) {
   std::vector<double> members(set.units(), 0.0);
   for (const std::size_t i : order) members[set.unit(i)] += counts[i] ? 1 : 0;
   std::vector<std::size_t> place(set.units(), set.size());
@@ -77,7 +77,7 @@ std::vector<PlacedUnit> units_in(const SampleSet& set, const std::vector<bool>& 
     std::size_t& at = place[set.unit(i)];
     if (at == set.size()) {
       at = units.size();
-      units.push_back({i, rows[k], {}});
+      units.push_back({i, given[k], {}});
     }
     units[at].normal += normal_of(set, i, fit, 1 / members[set.unit(i)]);
   }
@@ -163,8 +163,8 @@ double gain_of_other_orders(const SampleSet& set, const std::vector<PlacedUnit>&
 }
 
 std::optional<Finding> slip_among(const SampleSet& set, const std::vector<PlacedUnit>& units,
-                                  const SampleFit& fit, double most_variance, bool metres,
-                                  const SlipOptions& options) {
+                                  const SampleFit& fit, double most_variance, const SampleNames& names,
+                                  bool metres, const SlipOptions& options) {
   const std::size_t n = units.size();
   if (n < 2 * options.least_part) return std::nullopt;
   std::vector<std::size_t> as_given(n);
@@ -183,14 +183,14 @@ std::optional<Finding> slip_among(const SampleSet& set, const std::vector<Placed
   if (gain < options.least_gain) return std::nullopt;
   if (slip.gain < options.than_other_orders * gain_of_other_orders(set, units, undivided, options))
     return std::nullopt;
-  return worded_slip({units[slip.at].row, slip.of_target, slip.shift, slip.turn, gain,
+  return worded_slip({units[slip.at].given, slip.of_target, slip.shift, slip.turn, gain,
                       to_pose(frame_a_moved(fit.X, slip.after))},
-                     metres, gain > options.certain_gain);
+                     names, metres, gain > options.certain_gain);
 }
 
 }  // namespace
 
-Finding worded_slip(const FoundSlip& slip, bool metres, bool certain) {
+Finding worded_slip(const FoundSlip& slip, const SampleNames& names, bool metres, bool certain) {
   Finding finding;
   finding.code = "mount_moved";
   finding.certain = certain;
@@ -198,27 +198,28 @@ Finding worded_slip(const FoundSlip& slip, bool metres, bool certain) {
   finding.improvement = slip.gain;
   finding.T_a_b = slip.after;
   finding.message = format(
-      "From about sample %zu on (in the order given) %s is elsewhere, by %s and %.2g deg: the squared "
-      "residuals are %.3g times smaller with two places.",
-      slip.row + 1, slip.of_target ? "the target" : "the camera", length_in_words(slip.shift, metres).c_str(),
+      "From about %s on (%s) %s is elsewhere, by %s and %.2g deg: the squared residuals are %.3g times "
+      "smaller with two places.",
+      full_name_of(names, slip.sample).c_str(), names.order.c_str(),
+      slip.of_target ? "the target" : "the camera", length_in_words(slip.shift, metres).c_str(),
       slip.turn * degrees_per_radian, slip.gain);
-  finding.remedy = format("Fasten camera and target. Calibrate the samples before and after %zu separately.",
-                          slip.row + 1);
+  finding.remedy = format("Fasten camera and target. Calibrate the samples before and after %s separately.",
+                          name_of(names, slip.sample).c_str());
   return finding;
 }
 
 std::optional<Finding> find_slip(const SampleSet& set, const AgreeingSamples& agreeing,
-                                 const std::vector<std::size_t>& order, const std::vector<std::size_t>& rows,
-                                 bool metres, const SlipOptions& options) {
+                                 const std::vector<std::size_t>& order, const std::vector<std::size_t>& given,
+                                 const SampleNames& names, bool metres, const SlipOptions& options) {
   std::vector<bool> counts(set.size(), false);
   for (const std::size_t i : agreeing.chosen) counts[i] = true;
-  const std::vector<PlacedUnit> units = units_in(set, counts, agreeing.fit, order, rows);
+  const std::vector<PlacedUnit> units = units_in(set, counts, agreeing.fit, order, given);
   std::optional<Finding> found =
-      slip_among(set, units, agreeing.fit, std::numeric_limits<double>::infinity(), metres, options);
+      slip_among(set, units, agreeing.fit, std::numeric_limits<double>::infinity(), names, metres, options);
   if (found || set.size() - agreeing.chosen.size() < options.least_part) return found;
   const std::vector<PlacedUnit> all =
-      units_in(set, std::vector<bool>(set.size(), true), agreeing.fit, order, rows);
-  return slip_among(set, all, agreeing.fit, options.as_good * agreeing.fit.variance, metres, options);
+      units_in(set, std::vector<bool>(set.size(), true), agreeing.fit, order, given);
+  return slip_among(set, all, agreeing.fit, options.as_good * agreeing.fit.variance, names, metres, options);
 }
 
 }  // namespace egocal::detail

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "egocal/diagnosis/verdict.hpp"
+#include "egocal/samples/named_samples.hpp"
 #include "samples/agreeing.hpp"
 
 namespace egocal::detail {
@@ -31,7 +32,7 @@ struct SlipOptions {
 
 /// What a finding says of a slip.
 struct FoundSlip {
-  std::size_t row = 0;  ///< of the first sample after it, from 0
+  std::size_t sample = 0;  ///< the first one after it, as given
   bool of_target = false;
   double shift = 0, turn = 0;  ///< [m, rad]
   double gain = 1;             ///< of the squared residuals
@@ -39,15 +40,15 @@ struct FoundSlip {
 };
 
 /// The finding mount_moved of a slip. metres: what lengths are in, or units of their own.
-Finding worded_slip(const FoundSlip& slip, bool metres, bool certain);
+Finding worded_slip(const FoundSlip& slip, const SampleNames& names, bool metres, bool certain);
 
 /// Finding mount_moved where the camera (another X) or the target (another Y) is elsewhere from some sample
 /// on. An F test at each place, linear around the fit, with Bonferroni's factor. order: samples in the order
-/// in which they were taken, of which `place` says the number of each for the reader (from 0). Only this
-/// finding depends on the order. metres: what lengths are in, or units of their own. T_a_b: the answer after
-/// the slip.
+/// in which they were taken, of which `given` says the place of each among those given, which have these
+/// names. Only this finding depends on the order. metres: what lengths are in, or units of their own. T_a_b:
+/// the answer after the slip.
 std::optional<Finding> find_slip(const SampleSet& set, const AgreeingSamples& agreeing,
-                                 const std::vector<std::size_t>& order, const std::vector<std::size_t>& rows,
-                                 bool metres, const SlipOptions& options = {});
+                                 const std::vector<std::size_t>& order, const std::vector<std::size_t>& given,
+                                 const SampleNames& names, bool metres, const SlipOptions& options = {});
 
 }  // namespace egocal::detail

@@ -91,6 +91,13 @@ void answer_sensors(const SolveRequest& request, SolveResult& result) {
     throw UsageError("--method " + request.method + ": has no planar mode");
   CalibrationOptions options = request.calibration;
   options.method = method.value_or(Method::dual);
+  if (request.samples) {
+    answer_samples(request, result);
+    word_for_options_of_samples(options, request.scale_option, request.samples->eye_to_hand,
+                                result.calibration);
+    result.solve_us = time_of_method(Method::dual, result.calibration.problem);
+    return;
+  }
   Motions motions = read_motions(request.source);
   result.warnings = motions.warnings;  // where the further drives cannot be read, too
   const Drives drives = append_drives(request, motions);
@@ -98,13 +105,6 @@ void answer_sensors(const SolveRequest& request, SolveResult& result) {
   result.scale_side = options.scale_side;
   result.a_has_scale = motions.a_has_scale;
   result.b_has_scale = motions.b_has_scale;
-  if (request.samples) {
-    answer_samples(request, motions.a, motions.b, result);
-    word_for_options_of_samples(options, request.scale_option, request.samples->eye_to_hand,
-                                result.calibration);
-    result.solve_us = time_of_method(Method::dual, result.calibration.problem);
-    return;
-  }
   if (look_like_samples(motions.a, motions.b))
     result.warnings.push_back("these look like still poses of an arm rather than streams: try " +
                               request.solve + "--samples");

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -43,17 +45,21 @@ Motions read_both(const MotionSource& source) {
     motions.b = read_noting(source.b, source.reading_b, warnings_b, &motions.b_has_scale);
   };
   const bool are_long = is_long_file(source.a) && is_long_file(source.b);
-  try {
-    (are_long ? at_the_same_time : one_after_the_other)(read_a, read_b);
-  } catch (const MisplacedTimes& error) {
-    if (!has_common_times(source)) throw;
-    throw Error(std::string(error.what()) + "; --times-a or --times-b gives the times of one file alone");
-  }
+  with_times_of_both(source, [&] { (are_long ? at_the_same_time : one_after_the_other)(read_a, read_b); });
   motions.warnings.insert(motions.warnings.end(), warnings_b.begin(), warnings_b.end());
   return motions;
 }
 
 }  // namespace
+
+void with_times_of_both(const MotionSource& source, const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const MisplacedTimes& error) {
+    if (!has_common_times(source)) throw;
+    throw Error(std::string(error.what()) + "; --times-a or --times-b gives the times of one file alone");
+  }
+}
 
 Motions read_motions(const MotionSource& source) {
   Motions motions;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,10 @@ struct Motions {
   std::vector<MotionPair> pairs;  ///< from a file of pairs
   std::vector<std::string> warnings;
 };
+
+/// Runs what reads both files. Where one file of times was given for both and one has times of its own, the
+/// Error also says which options give the times of one file.
+void with_times_of_both(const MotionSource& source, const std::function<void()>& read);
 
 /// Throws Error naming the file or the channel that cannot be read.
 Motions read_motions(const MotionSource& source);

@@ -5,14 +5,19 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cstddef>
+#include <string>
+#include <vector>
+
 #include "egocal/bus/pose_json.hpp"
 #include "egocal/degrees.hpp"
+#include "offline/pair/samples.hpp"
 
 namespace egocal::tools {
 
 namespace {
 
-/// Rows of the file, counted from 1.
+/// Rows of the file of a, counted from 1.
 std::vector<std::size_t> wrong_rows(const SolveResult& result) {
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < result.samples->residuals.size(); ++i)
@@ -44,6 +49,7 @@ nlohmann::ordered_json samples_json(const SolveResult& result) {
   for (std::size_t i = 0; i < samples.residuals.size(); ++i) {
     const SampleResidual& residual = samples.residuals[i];
     json["residuals"].push_back({{"row", result.matched.rows_a[i] + 1},
+                                 {"row_b", result.matched.rows_b[i] + 1},
                                  {"rotation_deg", residual.rotation * degrees_per_radian},
                                  {"translation_mm", 1e3 * residual.translation},
                                  {"wrong", residual.wrong}});
@@ -53,7 +59,9 @@ nlohmann::ordered_json samples_json(const SolveResult& result) {
 
 std::string samples_text(const SolveResult& result) {
   const SampleCalibration& samples = *result.samples;
-  const std::vector<std::size_t> wrong = wrong_rows(result);
+  std::vector<std::string> wrong;
+  for (std::size_t i = 0; i < samples.residuals.size(); ++i)
+    if (samples.residuals[i].wrong) wrong.push_back(rows_in_words(result.matched, i));
   std::string text = fmt::format(
       "samples       {}{}\nfit           spread of the target {:.3g} mm (median), {:.3g} mm (rms), {:.3g} mm "
       "at most; noise of one sample {:.3g} deg, {:.3g} mm\n",

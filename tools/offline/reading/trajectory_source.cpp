@@ -7,6 +7,7 @@
 #include "egocal/error.hpp"
 #include "offline/reading/lcm_recording.hpp"
 #include "offline/reading/log_trajectory.hpp"
+#include "offline/reading/poses_as_given.hpp"
 
 namespace egocal::tools {
 
@@ -15,7 +16,9 @@ std::unique_ptr<Recording> open_any_recording(const std::string& file, const Rea
   return open_recording(file, options);
 }
 
-TrajectoryReading read_any_trajectory(const std::string& name, const ReadOptions& options) {
+namespace {
+
+TrajectoryReading read_any(const std::string& name, const ReadOptions& options, PosesOfFile* as_given) {
   const RecordingName parts = parse_recording_name(name);
   const auto with = [](TrajectoryReading reading, const std::vector<std::string>& notes) {
     reading.notes.insert(reading.notes.end(), notes.begin(), notes.end());
@@ -23,7 +26,8 @@ TrajectoryReading read_any_trajectory(const std::string& name, const ReadOptions
   };
   if (!is_lcm_log(parts.file) || parts.topic.empty()) {
     const std::unique_ptr<Recording> recording = open_any_recording(parts.file, options);
-    TrajectoryReading reading = read_trajectory_of(*recording, parts.topic);
+    TrajectoryReading reading = as_given ? read_trajectory_of(*recording, parts.topic, *as_given)
+                                         : read_trajectory_of(*recording, parts.topic);
     if (options.strict) refuse_repairs(name, reading);
     return with(std::move(reading), recording->unused(options));
   }
@@ -31,6 +35,7 @@ TrajectoryReading read_any_trajectory(const std::string& name, const ReadOptions
   LogTrajectory log = read_log_trajectory(parts.file, parts.topic);
   TrajectoryReading reading;
   reading.trajectory = std::move(log.poses);
+  if (as_given) *as_given = as_rows(reading.trajectory);
   reading.format = "LCM log";
   reading.stream = parts.topic;
   for (std::string* note : {&log.not_used, &log.damage})
@@ -38,6 +43,21 @@ TrajectoryReading read_any_trajectory(const std::string& name, const ReadOptions
   if (options.strict && !reading.notes.empty()) throw error_at(name, 0, "", reading.notes.front());
   if (!log.times.empty()) reading.notes.push_back(log.times);
   return with(std::move(reading), unused_by_messages(options));
+}
+
+}  // namespace
+
+TrajectoryReading read_any_trajectory(const std::string& name, const ReadOptions& options) {
+  return read_any(name, options, nullptr);
+}
+
+PosesAsGiven read_as_given(const std::string& name, const ReadOptions& options) {
+  PosesAsGiven poses;
+  const TrajectoryReading reading = read_any(name, options, &poses.list);
+  poses.has_scale = reading.has_scale;
+  for (const std::string& note : reading.notes) poses.notes.push_back(name + ": " + note);
+  for (const std::string& repair : repairs_in_words(reading)) poses.repairs.push_back(name + ": " + repair);
+  return poses;
 }
 
 Trajectory read_noting(const std::string& name, const ReadOptions& options,
