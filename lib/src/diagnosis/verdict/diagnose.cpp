@@ -157,10 +157,11 @@ void add_what_is_beside(const Foreseen& foreseen, const DiagnosisOptions& option
   name_small_scale(evidence, options, answered, result);
   if (pairing.mode != Mode::planar) {
     name_late_rotations(evidence, pairing.max_gap, options, wrong_stream, result.findings);
-    name_smoothed_rotations(evidence, pairing.max_gap, options, answered, result);
     widen_by_late_column(wrong_stream.late_column(), answered, result);
     name_early_rotations(evidence, options, answered, result);
     name_late_turning(evidence, options, answered, result);
+    // standard deviations that it widens would hide that a part is towed
+    name_smoothed_rotations(evidence, pairing.max_gap, options, answered, result);
   }
   name_askew_rotations(evidence, answered, options, result.findings);
   add_interpolated_streams(foreseen, options, answered, result);
