@@ -20,7 +20,7 @@ using testing::random_pairs;
 using testing::RandomDrive;
 
 DualQuaternion near_start(const DualQuaternion& T, Random& random) {
-  return T * random_displacement(random, 0.2, 0.5);
+  return T * testing::random_displacement(random, 0.2, 0.5);
 }
 
 TEST(Baselines, FindTheTruthWithoutNoise) {
@@ -126,7 +126,7 @@ TEST(Matrix, NothingNearbyIsBetter) {
     const double optimum = matrix_cost(pairs, T);
     for (int i = 0; i < 200; ++i) {
       const double size = random.log_uniform(1e-3, 3);
-      const DualQuaternion other = T * random_displacement(random, size, size);
+      const DualQuaternion other = T * testing::random_displacement(random, size, size);
       EXPECT_GE(matrix_cost(pairs, other), optimum * (1 - 1e-12));
     }
   }
@@ -160,7 +160,7 @@ TEST(Local, NothingNearbyIsBetter) {
     EXPECT_LT(optimum, sum_of_squares(pairs, truth));
     for (int i = 0; i < 200; ++i) {
       const double size = random.log_uniform(1e-4, 1e-1);
-      const DualQuaternion other = answer.T_a_b * random_displacement(random, size, size);
+      const DualQuaternion other = answer.T_a_b * testing::random_displacement(random, size, size);
       EXPECT_GT(sum_of_squares(pairs, other), optimum);
     }
   }

@@ -51,13 +51,13 @@ TEST(Proof, AcceptsSemidefiniteAndRefusesIndefiniteMatrices) {
 TEST(Certificate, BoundHoldsForEveryOtherExtrinsic) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     Random random(seed);
-    const DualQuaternion T = normal_displacement(random, 1, 2);
+    const DualQuaternion T = testing::normal_displacement(random, 1, 2);
     const Matrix8d Q =
         cost_of(T, {.motion = static_cast<Motion>(seed % 2), .noise = random.log_uniform(1e-5, 0.3)}, random);
     const Certificate certificate = verify(Q, solve_dual(Q).q);
     for (int i = 0; i < 50; ++i) {
       const double reach = random.log_uniform(1e-6, 10);
-      const DualQuaternion other = T * normal_displacement(random, reach, reach);
+      const DualQuaternion other = T * testing::normal_displacement(random, reach, reach);
       EXPECT_GE(static_cast<double>(extended_cost(Q, other)), certificate.lower_bound) << seed;
     }
   }
@@ -68,7 +68,7 @@ TEST(Certificate, NoPerturbedAnswerPasses) {
   int refused = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     Random random(seed);
-    const DualQuaternion T = normal_displacement(random, 1, 2);
+    const DualQuaternion T = testing::normal_displacement(random, 1, 2);
     const Matrix8d Q =
         cost_of(T, {.motion = static_cast<Motion>(seed % 4), .noise = random.log_uniform(1e-6, 0.3)}, random);
     const Solution best = solve_dual(Q);
@@ -122,11 +122,11 @@ TEST(Certificate, ReachContainsTheOptimum) {
   int finite = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     Random random(seed);
-    const DualQuaternion T = normal_displacement(random, 1, 2);
+    const DualQuaternion T = testing::normal_displacement(random, 1, 2);
     const Matrix8d Q = cost_of(T, {.motion = static_cast<Motion>(seed % 2), .noise = 1e-3}, random);
     const DualQuaternion best = solve_dual(Q).q;
     const double size = random.log_uniform(1e-7, 1e-3);
-    const DualQuaternion off = best * random_displacement(random, size, size);
+    const DualQuaternion off = best * testing::random_displacement(random, size, size);
     const Certificate certificate = verify(Q, off);
     const ExtrinsicError distance = extrinsic_error(off, best);
     EXPECT_GE(certificate.reach_rotation, distance.rotation) << seed;
@@ -161,10 +161,10 @@ TEST(Certificate, RotationWithoutNoiseAndTranslationWithIsDecided) {
   int certified = 0;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     Random random(seed);
-    const DualQuaternion T = normal_displacement(random);
+    const DualQuaternion T = testing::normal_displacement(random);
     Statistics statistics;
     for (int i = 0; i < 100; ++i) {
-      const DualQuaternion b = normal_displacement(random, 0.1, 1);
+      const DualQuaternion b = testing::normal_displacement(random, 0.1, 1);
       statistics.add(T * b * conjugate(T) * displacement({0, 0, 0}, random.normal3(0.05)), b);
     }
     const Matrix8d Q = cost_matrix(statistics);

@@ -34,7 +34,7 @@ TEST(Congruence, PairsInAnyOrderAreJudgedByTheirLike) {
         for (MotionPair& pair : pairs) {
           spoilt.push_back(random.uniform() < part);
           if (spoilt.back())
-            pair.b = canonical_sign(normalized(pair.b * normal_displacement(random, size, size)));
+            pair.b = canonical_sign(normalized(pair.b * testing::normal_displacement(random, size, size)));
         }
         const std::vector<bool> found = incongruent(pairs);
         ASSERT_EQ(found.size(), count);
@@ -74,8 +74,8 @@ TEST(Congruence, FirstTurnInPlaceIsNotRejected) {
             displacement({0.005 * std::sin(0.2 * i), 0.005 * std::sin(0.17 * i), turns ? 0.08 : 0},
                          {turns ? 0 : 0.1, 0, 0});
         const double noise = grows && !turns ? 1e-4 : 3e-4;
-        at_a = normalized(at_a * step * normal_displacement(random, noise, 1e-3));
-        at_b = normalized(at_b * conjugate(T) * step * T * normal_displacement(random, noise, 1e-3));
+        at_a = normalized(at_a * step * testing::normal_displacement(random, noise, 1e-3));
+        at_b = normalized(at_b * conjugate(T) * step * T * testing::normal_displacement(random, noise, 1e-3));
       }
       const PairingCounts counts = pair_motions({}, a, b).drive.counts();
       for (const std::uint64_t rejected : counts.rejected) EXPECT_EQ(rejected, 0u) << grows << " " << seed;

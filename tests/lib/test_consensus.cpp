@@ -152,7 +152,7 @@ TEST(RobustStatistics, TheFirstTurnIsNotAnOutlier) {
   const Problem problem;
   std::uint64_t turns = 0;
   const auto add = [&](const DualQuaternion& b) {
-    const DualQuaternion noisy = b * normal_displacement(random, 1e-4, 1e-3);
+    const DualQuaternion noisy = b * testing::normal_displacement(random, 1e-4, 1e-3);
     statistics.add({T_a_b * b * conjugate(T_a_b), noisy}, problem);
     if (statistics.look_is_due()) statistics.look(problem);
   };

@@ -20,7 +20,7 @@ const DualQuaternion T_a_b = displacement({0.4, -1.1, 0.7}, {0.5, -2, 1.2});
 TEST(Cost, IsTheResidualOf14) {
   Random random(1);
   for (const MotionPair& pair : random_pairs(T_a_b, {.pairs = 20, .noise = 0.3}, random)) {
-    const DualQuaternion q = normal_displacement(random);
+    const DualQuaternion q = testing::normal_displacement(random);
     const Vector8d residual = (q * canonical_sign(pair.b)).vec() - (canonical_sign(pair.a) * q).vec();
     const Vector8d w = (Vector8d() << 1, 2, 3, 4, 0.5, 0.6, 0.7, 0.8).finished();
     EXPECT_NEAR(cost(pair_cost(pair.a, pair.b), q), residual.squaredNorm(), 1e-12);
@@ -122,7 +122,7 @@ TEST(Constraints, LeastSquaresMultipliersMinimise28) {
   Random random(10);
   Matrix8d Q = Matrix8d::NullaryExpr([&] { return random.normal(); });
   Q = (Q * Q.transpose()).eval();
-  const DualQuaternion q = normal_displacement(random);
+  const DualQuaternion q = testing::normal_displacement(random);
   const Multipliers best = least_squares_multipliers(Q, q);
   const auto residual = [&](double a, double b) {
     return (lagrangian_matrix(Q, {best.norm + a, best.orthogonal + b}) * q.vec()).norm();

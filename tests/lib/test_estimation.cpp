@@ -27,7 +27,7 @@ testing::Streams with_pose_noise(testing::Streams streams, double rotation, doub
   Random random(seed);
   for (Trajectory* trajectory : {&streams.a, &streams.b})
     for (StampedPose& pose : *trajectory)
-      pose.pose = pose.pose * normal_displacement(random, rotation, translation);
+      pose.pose = pose.pose * testing::normal_displacement(random, rotation, translation);
   return streams;
 }
 
@@ -74,7 +74,7 @@ testing::Streams with_heavy_tails(testing::Streams streams, std::uint64_t seed) 
     for (StampedPose& pose : *trajectory) {
       const double times = std::exp(1.5 * random.normal());
       noisy = normalized(noisy * conjugate(before) * pose.pose *
-                         normal_displacement(random, 0.0005 * times, 0.005 * times));
+                         testing::normal_displacement(random, 0.0005 * times, 0.005 * times));
       before = std::exchange(pose.pose, noisy);
     }
   }
@@ -138,13 +138,13 @@ TEST(Estimation, TheBlocksOfOverlappingMotionsAddUpToTheWhole) {
   Statistics expected;
   const StrideWeights weights{{2, 1, 0.5}, {0.3, 0.2, 0.1}};
   for (std::uint64_t i = 0; i < 300; ++i) {
-    if (i > 0) poses.push_back(poses.back() * normal_displacement(random, 0.1, 1));
+    if (i > 0) poses.push_back(poses.back() * testing::normal_displacement(random, 0.1, 1));
     blocks.add_instant(i);
     for (std::size_t k = 0; k < blocks.strides().size(); ++k) {
       const auto steps = static_cast<std::uint64_t>(blocks.strides()[k].stride);
       if (steps > i) continue;
       const DualQuaternion motion = motion_between(poses[i - steps], poses[i]);
-      const DualQuaternion other = motion * normal_displacement(random, 0.01, 0.1);
+      const DualQuaternion other = motion * testing::normal_displacement(random, 0.01, 0.1);
       blocks.add(k, i - steps, detail::MotionSquare(motion, other), false, 1);
       StrideCell one;
       one.motions.add(motion, other);

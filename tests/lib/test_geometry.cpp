@@ -101,7 +101,7 @@ TEST(Interpolation, FollowsTheScrew) {
 TEST(Screw, AngleAndSlideDoNotDependOnTheSensor) {
   Random random(4);
   for (const DualQuaternion& motion : displacements()) {
-    const DualQuaternion T = normal_displacement(random, 1, 5);
+    const DualQuaternion T = testing::normal_displacement(random, 1, 5);
     const Screw a = screw_of(T * motion * conjugate(T)), b = screw_of(motion);
     EXPECT_NEAR(a.angle, b.angle, 1e-7);
     if (b.angle > 1e-3 && b.angle < 3.1) {

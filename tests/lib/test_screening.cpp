@@ -66,8 +66,8 @@ TEST(Screening, LongLeverArmsAreAnOption) {
   for (std::uint64_t i = 0; i < 600; ++i) {
     // still for a while, then turning
     const double turn = i % 100 < 50 ? 0.0005 : 0.05;
-    a = normalized(a * random_displacement(random, turn, 0.02));
-    const DualQuaternion noise = normal_displacement(random, 1e-5, 1e-3);
+    a = normalized(a * testing::random_displacement(random, turn, 0.02));
+    const DualQuaternion noise = testing::normal_displacement(random, 1e-5, 1e-3);
     instants.push_back({static_cast<std::int64_t>(i) * period_us, a, normalized(a * T * noise), 0, i + 1});
   }
   const auto rejections = [&](double longest_lever_arm) {

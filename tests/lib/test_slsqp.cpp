@@ -26,7 +26,7 @@ using testing::RandomDrive;
 
 /// A unit dual quaternion near q: exactly feasible, and wrong.
 DualQuaternion wrong_start(const DualQuaternion& q, Random& random, double rotation, double translation) {
-  return q * random_displacement(random, rotation, translation);
+  return q * testing::random_displacement(random, rotation, translation);
 }
 
 TEST(Slsqp, AWrongButFeasibleWarmStartMoves) {

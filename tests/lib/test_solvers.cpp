@@ -214,7 +214,7 @@ TEST(Sqp, AWrongStartMoves) {
     const Matrix8d Q = cost_of(T, {.noise = 0.01}, random);
     const Solution best = solve_dual(Q);
     for (const double offset : {1e-6, 1e-3, 0.1}) {
-      const DualQuaternion start = best.q * random_displacement(random, offset, offset);
+      const DualQuaternion start = best.q * testing::random_displacement(random, offset, offset);
       const Solution solution = solve_sqp(Q, start);
       EXPECT_EQ(solution.status, SolverStatus::converged);
       EXPECT_LT(extrinsic_error(best.q, solution.q).rotation, 1e-9) << seed << " " << offset;

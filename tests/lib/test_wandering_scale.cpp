@@ -33,8 +33,8 @@ testing::Streams wandering(std::uint64_t seed) {
          {x, y, 0}});
   }
   testing::Streams streams;
-  streams.a = measured(random, body, seconds, {testing::T_vehicle_a, 10, 0, 0, 1e-4, 1e-3});
-  streams.b = measured(random, body, seconds, {testing::T_vehicle_b, 10, 0, 0, 1e-4, 1e-3});
+  streams.a = testing::measured(random, body, seconds, {testing::T_vehicle_a, 10, 0, 0, 1e-4, 1e-3});
+  streams.b = testing::measured(random, body, seconds, {testing::T_vehicle_b, 10, 0, 0, 1e-4, 1e-3});
   ScaleCourse course;
   const std::int64_t begin_us = streams.b.front().time_us, end_us = streams.b.back().time_us,
                      middle_us = begin_us + (end_us - begin_us) / 2;

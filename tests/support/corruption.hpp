@@ -70,7 +70,7 @@ inline Trajectory corrupted(Trajectory path, Corruption corruption, std::uint64_
   const auto seconds = [&](double s) {
     return std::clamp<std::size_t>(static_cast<std::size_t>(s / period), 2, whole);
   };
-  const auto elsewhere = [&] { return normal_displacement(random, 2, 0.5); };
+  const auto elsewhere = [&] { return testing::normal_displacement(random, 2, 0.5); };
   const auto freeze = [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first + 1; i < last; ++i) path[i].pose = path[first].pose;
   };

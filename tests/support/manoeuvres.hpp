@@ -25,7 +25,9 @@ struct ManoeuvresOptions {
 inline Streams manoeuvres(std::uint64_t seed, bool by_hand, const ManoeuvresOptions& options) {
   constexpr double period = 0.1;
   Random random(seed);
-  const auto mount = [&] { return random_displacement(random, 1.5, options.lever_arm * random.uniform()); };
+  const auto mount = [&] {
+    return testing::random_displacement(random, 1.5, options.lever_arm * random.uniform());
+  };
   const DualQuaternion T_a = mount(), T_b = mount();
   const double seconds = random.uniform(options.least_seconds, options.most_seconds);
   std::vector<DualQuaternion> steps;

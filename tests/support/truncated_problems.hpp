@@ -34,7 +34,7 @@ inline TruncatedProblem truncated_problem(const TruncatedDrive& drive, Random& r
   std::vector<double> costs;
   for (std::size_t k = 0; k < drive.blocks; ++k) {
     const bool wrong = random.uniform() < drive.outliers;
-    const DualQuaternion off = normal_displacement(random, drive.outlier_size, drive.outlier_size);
+    const DualQuaternion off = testing::normal_displacement(random, drive.outlier_size, drive.outlier_size);
     RandomDrive block;
     block.motion = drive.motion;
     block.pairs = drive.motions_per_block;
