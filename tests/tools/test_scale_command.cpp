@@ -159,7 +159,7 @@ TEST_F(ScaleCommand, AScaleThatDriftsIsFollowed) {
   const std::string yaml = run("solve --format yaml" + streams).out;
   EXPECT_NE(yaml.find("  certified: false\n  changes: true  #"), std::string::npos) << yaml;
   ASSERT_EQ(run("report --out " + folder.path("page.html") + streams).code, 0);
-  const std::string page = content_of(folder.path("page.html"));
+  const std::string page = testing::content_of(folder.path("page.html"));
   EXPECT_NE(page.find("changes along the drive"), std::string::npos);
   EXPECT_NE(page.find("drifts from "), std::string::npos);
 }
