@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -106,6 +107,7 @@ double largest_in_stddevs(const Calibration& calibration, const DualQuaternion& 
 // At one speed the answer at the clock of the rotations leaves no residual. It was good, 20 cm and up to 14
 // standard deviations off, and nothing but the clock was named.
 TEST(SmoothedRotations, WidenWhatIsStated) {
+  int named = 0;
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     testing::Streams streams = testing::tractor(seed, 0);
     streams.b = with_smoothed_rotations(streams.b);
@@ -114,13 +116,18 @@ TEST(SmoothedRotations, WidenWhatIsStated) {
       options.estimate_time_offset = estimate;
       const Calibration calibration = calibrate(streams.a, streams.b, options);
       const Finding* const found = testing::find(calibration, "late_positions_b");
+      const std::array<bool, 6>& known = calibration.observability.observable;
+      // beside the wrong clock a drive may not show the translation at all: then nothing wrong is stated
+      if (!estimate && !known[0] && !known[1] && !known[2]) continue;
       ASSERT_NE(found, nullptr) << calibration.reason;
+      ++named;
       EXPECT_FALSE(found->certain);
       EXPECT_NEAR(*found->value, -mean_delay(), 0.5 * mean_delay());
       EXPECT_LT(largest_in_stddevs(calibration, streams.T), 3) << seed << estimate;
       EXPECT_LT(extrinsic_error(streams.T, to_dual_quaternion(*found->T_a_b)).translation, 0.12);
     }
   }
+  EXPECT_GE(named, 3);
 }
 
 }  // namespace
