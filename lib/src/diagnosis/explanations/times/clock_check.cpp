@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "diagnosis/explanations/times/moved_answer.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/degrees.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
@@ -130,9 +131,8 @@ Finding rival_clock_offset(const TimeOffset& offset, const DualQuaternion& T_a_b
 
 std::string rival_in_words(const Finding& rival, const Pose& T_a_b, const Observability& observability,
                            const DiagnosisOptions& options) {
-  Vector6d difference = frame_a_difference(T_a_b, to_dual_quaternion(rival.T_a_b.value()));
-  for (std::size_t i = 0; i < 6; ++i)
-    if (!observability.observable[i]) difference[static_cast<Eigen::Index>(i)] = 0;
+  const Vector6d difference =
+      in_known_directions(frame_a_difference(T_a_b, to_dual_quaternion(rival.T_a_b.value())), observability);
   const double rotation = difference.tail<3>().norm(), translation = difference.head<3>().norm();
   if (!(rotation > options.tolerance_rotation || translation > options.tolerance_translation)) return "";
   return format("%s The answer would be another one, %.3g deg and %s away.", rival.message.c_str(),

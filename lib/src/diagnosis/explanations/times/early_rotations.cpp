@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "diagnosis/goal/goal.hpp"
-#include "diagnosis/verdict/far_off.hpp"
+#include "diagnosis/explanations/times/moved_answer.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/certain_of_either.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
@@ -28,20 +27,7 @@ bool shows_two_times(const EarlyRotations& found, const EarlyRotationsOptions& e
 
 /// How far two times move the answer, in the directions that are known.
 Vector6d moved_by_two_times(const EarlyRotations& found, const Answered& answered) {
-  Vector6d moved = frame_a_difference(found.T_a_b_as_given, found.T_a_b);
-  for (std::size_t i = 0; i < 6; ++i)
-    if (!answered.observability.observable[i]) moved[static_cast<Eigen::Index>(i)] = 0;
-  return moved;
-}
-
-bool early_matters(const Vector6d& moved, const Answered& answered, const DiagnosisOptions& options,
-                   const EarlyRotationsOptions& early) {
-  if (far_off(frame_a_moved(answered.T_a_b, moved), answered, options) < early.least_move) return false;
-  for (std::size_t i = 0; i < 6; ++i)
-    if (std::abs(moved[static_cast<Eigen::Index>(i)]) >
-        early.matters * with_further_parts(answered.observability.stddev[i], answered, i))
-      return true;
-  return false;
+  return in_known_directions(frame_a_difference(found.T_a_b_as_given, found.T_a_b), answered.observability);
 }
 
 /// The rotations of `side` are early, so that its positions look late.
@@ -141,7 +127,7 @@ void name_early_rotations(const Evidence& evidence, const DiagnosisOptions& opti
   const std::optional<EarlyRotations> found = early_of_either(evidence, early);
   if (!found) return;
   const Vector6d moved = moved_by_two_times(*found, answered);
-  if (!early_matters(moved, answered, options, early)) return;
+  if (!matters(moved, answered, options, early.least_move, early.matters)) return;
   // filters delay, so the stream whose positions are late comes first
   const Side other = found->side == Side::a ? Side::b : Side::a,
              late = found->seconds > 0 ? found->side : other;
@@ -152,9 +138,7 @@ void name_early_rotations(const Evidence& evidence, const DiagnosisOptions& opti
   // a clock between both
   std::erase_if(result.findings, [](const Finding& one) { return one.code == "clock_offset"; });
   result.findings.insert(result.findings.begin(), findings.begin(), findings.end());
-  for (std::size_t i = 0; i < 6; ++i)
-    answered.timing_stddev[i] = std::hypot(answered.timing_stddev[i], moved[static_cast<Eigen::Index>(i)]);
-  result.timing_stddev = answered.timing_stddev;
+  widen_by(moved, answered, result);
 }
 
 }  // namespace egocal::detail

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "diagnosis/explanations/common_mistakes.hpp"
+#include "diagnosis/explanations/times/moved_answer.hpp"
 #include "diagnosis/motions/changed_motions.hpp"
 #include "diagnosis/motions/speeds.hpp"
 #include "diagnosis/motions/stillest_point.hpp"
@@ -165,10 +166,7 @@ void widen_by_late_column(const std::vector<Finding>& late, Answered& answered, 
       }))
     return;
   const Vector6d moved = frame_a_difference(answered.T_a_b, to_dual_quaternion(*late.front().T_a_b));
-  for (std::size_t i = 0; i < 6; ++i)
-    if (answered.observability.observable[i])
-      answered.timing_stddev[i] = std::hypot(answered.timing_stddev[i], moved[static_cast<Eigen::Index>(i)]);
-  result.timing_stddev = answered.timing_stddev;
+  widen_by(in_known_directions(moved, answered.observability), answered, result);
 }
 
 }  // namespace egocal::detail

@@ -8,9 +8,8 @@
 #include <vector>
 
 #include "diagnosis/explanations/times/early_rotations.hpp"
-#include "diagnosis/goal/goal.hpp"
+#include "diagnosis/explanations/times/moved_answer.hpp"
 #include "diagnosis/motions/mount_fit.hpp"
-#include "diagnosis/verdict/far_off.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
 #include "uncertainty/frame_a.hpp"
@@ -74,24 +73,6 @@ bool is_late(const LateTurning& found, const LateTurningOptions& late) {
          std::abs(found.others) < late.most_of_others * found.seconds && found.gain > late.least_gain;
 }
 
-/// How far late turning moves the answer, in the directions that are known.
-Vector6d moved_by_late_turning(const LateTurning& found, const Answered& answered) {
-  Vector6d moved = frame_a_difference(found.T_a_b_as_given, found.T_a_b);
-  for (std::size_t i = 0; i < 6; ++i)
-    if (!answered.observability.observable[i]) moved[static_cast<Eigen::Index>(i)] = 0;
-  return moved;
-}
-
-bool late_turning_matters(const Vector6d& moved, const Answered& answered, const DiagnosisOptions& options,
-                          const LateTurningOptions& late) {
-  if (far_off(frame_a_moved(answered.T_a_b, moved), answered, options) < late.least_move) return false;
-  for (std::size_t i = 0; i < 6; ++i)
-    if (std::abs(moved[static_cast<Eigen::Index>(i)]) >
-        late.matters * with_further_parts(answered.observability.stddev[i], answered, i))
-      return true;
-  return false;
-}
-
 Finding worded_late_turning(const LateTurning& found, const Vector6d& moved, const Answered& answered) {
   const char which = found.side == Side::a ? 'a' : 'b', rest = which == 'a' ? 'b' : 'a';
   Finding finding;
@@ -134,14 +115,13 @@ void name_late_turning(const Evidence& evidence, const DiagnosisOptions& options
     return;
   const std::optional<LateTurning> found = late_turning(evidence.instants, evidence.given.explained, late);
   if (!found) return;
-  const Vector6d moved = moved_by_late_turning(*found, answered);
-  if (!late_turning_matters(moved, answered, options, late)) return;
+  const Vector6d moved =
+      in_known_directions(frame_a_difference(found->T_a_b_as_given, found->T_a_b), answered.observability);
+  if (!matters(moved, answered, options, late.least_move, late.matters)) return;
   // a clock between the times about several axes
   std::erase_if(result.findings, [](const Finding& one) { return one.code == "clock_offset"; });
   result.findings.insert(result.findings.begin(), worded_late_turning(*found, moved, answered));
-  for (std::size_t i = 0; i < 6; ++i)
-    answered.timing_stddev[i] = std::hypot(answered.timing_stddev[i], moved[static_cast<Eigen::Index>(i)]);
-  result.timing_stddev = answered.timing_stddev;
+  widen_by(moved, answered, result);
 }
 
 }  // namespace egocal::detail

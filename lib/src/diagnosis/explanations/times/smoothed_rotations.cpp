@@ -10,11 +10,10 @@
 #include <vector>
 
 #include "diagnosis/explanations/times/late_rotations.hpp"
-#include "diagnosis/goal/goal.hpp"
+#include "diagnosis/explanations/times/moved_answer.hpp"
 #include "diagnosis/motions/changed_motions.hpp"
 #include "diagnosis/motions/mount_fit.hpp"
 #include "diagnosis/motions/speeds.hpp"
-#include "diagnosis/verdict/far_off.hpp"
 #include "diagnosis/words/wording.hpp"
 #include "egocal/diagnosis/certain_of_either.hpp"
 #include "egocal/diagnosis/finding_words.hpp"
@@ -166,23 +165,6 @@ bool explains_smoothed(const Finding& finding) {
          finding.code == "too_little_motion";
 }
 
-/// A change of the answer in the directions that are known.
-Vector6d in_known_directions(Vector6d change, const Answered& answered) {
-  for (std::size_t i = 0; i < 6; ++i)
-    if (!answered.observability.observable[i]) change[static_cast<Eigen::Index>(i)] = 0;
-  return change;
-}
-
-bool smoothing_matters(const Vector6d& moved, const Answered& answered, const DiagnosisOptions& options,
-                       const SmoothedRotationsOptions& smoothed) {
-  if (far_off(frame_a_moved(answered.T_a_b, moved), answered, options) < smoothed.least_move) return false;
-  for (std::size_t i = 0; i < 6; ++i)
-    if (std::abs(moved[static_cast<Eigen::Index>(i)]) >
-        smoothed.matters * with_further_parts(answered.observability.stddev[i], answered, i))
-      return true;
-  return false;
-}
-
 /// T_a_b: the answer with the positions on time.
 Finding worded_smoothed(const OnTime& found, const DualQuaternion& T_a_b) {
   const char which = found.rotations.side == Side::a ? 'a' : 'b';
@@ -249,15 +231,13 @@ void name_smoothed_rotations(const Evidence& evidence, double max_gap, const Dia
   std::optional<OnTime> found = on_time(clock, Side::b, offset, smoothed);
   if (!found) found = on_time(clock, Side::a, offset, smoothed);
   if (!found) return;
-  const Vector6d moved = in_known_directions(found->moved, answered);
-  if (!smoothing_matters(moved, answered, options, smoothed)) return;
+  const Vector6d moved = in_known_directions(found->moved, answered.observability);
+  if (!matters(moved, answered, options, smoothed.least_move, smoothed.matters)) return;
   const DualQuaternion on_its_clock = certain_clock ? to_dual_quaternion(*named->T_a_b) : answered.T_a_b,
                        T_a_b = frame_a_moved(on_its_clock, moved);
   findings.insert(certain_clock ? std::next(named) : findings.begin(), worded_smoothed(*found, T_a_b));
-  const Vector6d apart = in_known_directions(frame_a_difference(answered.T_a_b, T_a_b), answered);
-  for (std::size_t i = 0; i < 6; ++i)
-    answered.timing_stddev[i] = std::hypot(answered.timing_stddev[i], apart[static_cast<Eigen::Index>(i)]);
-  result.timing_stddev = answered.timing_stddev;
+  widen_by(in_known_directions(frame_a_difference(answered.T_a_b, T_a_b), answered.observability), answered,
+           result);
 }
 
 }  // namespace egocal::detail
