@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "egocal/bus/check.hpp"
+#include "egocal/bus/work_thread.hpp"
 #include "egocal/error.hpp"
 #include "ending_signals.hpp"
 #include "message_queue.hpp"
-#include "work_thread.hpp"
 
 namespace egocal::bus {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "work_thread.hpp"
+#include "egocal/bus/work_thread.hpp"
 
 #include <sys/eventfd.h>
 #include <unistd.h>

@@ -6,8 +6,8 @@
 
 namespace egocal::tools {
 
-/// An egocal::Beside at the same time: the second one in a thread of its own, or after the first where the
-/// system gives none. Where both throw, what the first one threw is thrown.
+/// An egocal::Beside at the same time: the second one in a thread of its own, or before the first where the
+/// system gives none. Both are run to their ends; where both throw, what the first one threw is thrown.
 void at_the_same_time(const std::function<void()>& first, const std::function<void()>& second);
 
 /// The same without a thread.
