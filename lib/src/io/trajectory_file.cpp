@@ -9,7 +9,7 @@
 
 #include "egocal/error.hpp"
 #include "egocal/in_words.hpp"
-#include "egocal/io/poses_of_file.hpp"
+#include "egocal/io/poses_as_given.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/printable.hpp"
 #include "io/static_transform.hpp"

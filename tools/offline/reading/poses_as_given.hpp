@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "egocal/io/poses_of_file.hpp"
+#include "egocal/io/poses_as_given.hpp"
 
 namespace egocal::tools {
 

@@ -64,7 +64,7 @@ class BagRecording : public Recording {
     enum class Decision { open, stamped, unstamped } decision = Decision::open;
     std::vector<Usable> undecided{};  ///< the first messages, which have none
   };
-  static constexpr std::size_t most_undecided = 1000;  ///< 200 kB a stream; drivers start up within seconds
+  static constexpr std::size_t most_undecided = 1000;  ///< limit on memory: 200 kB a stream
 
   std::string format_;
   Parts parts_;

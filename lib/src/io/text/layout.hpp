@@ -32,8 +32,8 @@ struct TextLayout {
   std::vector<std::string> notes;  ///< what was assumed
 };
 
-/// Times above it are no seconds since 1970 [s]: 2100.
-inline constexpr double latest_seconds = 4.1e9;
+/// Limits of times in seconds since 1970 [s]: 1979, before GPS time, and 2100.
+inline constexpr double earliest_seconds = 3e8, latest_seconds = 4.1e9;
 
 /// Decides by the first 64 KiB of the file. Throws Error where the file holds no data, is no text, or its
 /// columns are not understood.

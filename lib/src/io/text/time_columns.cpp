@@ -41,7 +41,7 @@ constexpr TimeUnitName time_units[] = {{TimeUnit::seconds, "seconds", 1},
 
 /// Limits of the times of poses. The cases are those of tests/lib/test_io_table_times.cpp.
 struct TimeLimits {
-  double earliest = 3e8, latest = 2.5e9;  ///< of dates [s]: 1979, before GPS time, and 2049
+  double earliest = earliest_seconds, latest = 2.5e9;  ///< of dates [s]: 1979 and 2049
   /// No sensor that is worth calibrating sends a pose every ten seconds and less often [s].
   double longest_step = 10;
   /// Still poses do come as rarely. Files of at most this many rows may hold them, with dates from 2000 on

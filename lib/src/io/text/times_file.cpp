@@ -18,10 +18,9 @@ namespace {
 
 /// What a time that is too large for seconds may be, and the cure; empty: anything.
 std::string in_other_unit(double size) {
-  constexpr double earliest = 3e8;  // limit of dates [s]: 1979, before GPS time
-  if (size >= 1e3 * earliest && size <= 1e3 * latest_seconds)
+  if (size >= 1e3 * earliest_seconds && size <= 1e3 * latest_seconds)
     return ", as large as milliseconds since 1970: divide the times by 1000";
-  if (size >= 1e6 * earliest && size <= 1e6 * latest_seconds)
+  if (size >= 1e6 * earliest_seconds && size <= 1e6 * latest_seconds)
     return ", as large as microseconds since 1970: divide the times by 1000000";
   return ": give the times in seconds";
 }
@@ -47,8 +46,8 @@ std::vector<std::int64_t> read_times_file(const std::string& file) {
                      "expected one time, got " + std::to_string(fields.size()) + " fields");
     double size = 0;
     const bool is_number = parse_number(text, size);
-    constexpr double least_ns = 4.1e15;  // limit of dates: microseconds of 2100
-    const bool epoch_ns = is_number && std::abs(size) > least_ns;
+    // larger than dates in microseconds
+    const bool epoch_ns = is_number && std::abs(size) > 1e6 * latest_seconds;
     if (is_number && !epoch_ns && std::abs(size) > latest_seconds)
       throw error_at(
           file, lines.number(), "time",
