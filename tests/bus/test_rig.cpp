@@ -3,14 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <numbers>
 #include <string>
 
 #include "egocal/bus/rig.hpp"
 #include "egocal/error.hpp"
+#include "support/scratch_folder.hpp"
 
 namespace egocal::bus::test_rig {
 namespace {
@@ -217,9 +216,8 @@ TEST(Rig, FoldersAreNamedAsSuch) {
 
 // "filesystem error: status: Too many levels of symbolic links [a.toml]"
 TEST(Rig, ALinkToItselfIsAFileThatCannotBeRead) {
-  std::string folder = (std::filesystem::temp_directory_path() / "egocal_XXXXXX").string();
-  ASSERT_NE(mkdtemp(folder.data()), nullptr);
-  const std::string file = folder + "/a.toml";
+  const testing::ScratchFolder folder;
+  const std::string file = folder.path("a.toml");
   std::filesystem::create_symlink(file, file);
   try {
     read_rig(file);
@@ -227,7 +225,6 @@ TEST(Rig, ALinkToItselfIsAFileThatCannotBeRead) {
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), ::testing::StartsWith(file + ": cannot be read as a rig file: "));
   }
-  std::filesystem::remove_all(folder);
 }
 
 // toml++ ends with a crash at a dotted key of some 50,000 parts.

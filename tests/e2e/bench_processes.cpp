@@ -23,6 +23,7 @@
 #include "support/child_process.hpp"
 #include "support/network_namespace.hpp"
 #include "support/paths.hpp"
+#include "support/scratch_folder.hpp"
 
 namespace egocal {
 namespace {
@@ -44,22 +45,16 @@ struct Options {
 };
 
 struct Setting {
-  std::string folder, rig, url = "udpm://239.255.76.67:7880?ttl=0";
+  testing::ScratchFolder scratch;
+  std::string folder = scratch.path().string(), rig = scratch.path("rig.toml"),
+              url = "udpm://239.255.76.67:7880?ttl=0";
   std::map<std::string, ChildProcess> processes;
 
   explicit Setting(int sensors) {
-    char name[] = "/tmp/egocal-bench-XXXXXX";
-    if (!mkdtemp(name)) throw std::runtime_error("no temporary folder");
-    folder = name;
-    rig = folder + "/rig.toml";
     std::ofstream out(rig);
     for (int i = 0; i < sensors; ++i)
       out << "[[sensor]]\nname = \"s" << i << "\"\nchannel = \"S" << i << "\"\n";
     for (int i = 1; i < sensors; ++i) out << "[[pair]]\na = \"s0\"\nb = \"s" << i << "\"\n";
-  }
-  ~Setting() {
-    processes.clear();
-    std::filesystem::remove_all(folder);
   }
   void start(const std::string& program, std::vector<std::string> more = {}) {
     std::vector<std::string> arguments{bin + "/" + program, "--rig", rig, "--lcm-url", url};

@@ -26,6 +26,7 @@
 #include "support/network_namespace.hpp"
 #include "support/paths.hpp"
 #include "support/random_motion.hpp"
+#include "support/scratch_folder.hpp"
 
 namespace egocal {
 namespace {
@@ -323,18 +324,17 @@ int main(int argc, char** argv) {
       .show_default();
   if (const auto code = app.parse(argc, argv)) return *code;
   if (!egocal::test::enter_network_namespace()) return 1;
-  char folder[] = "/tmp/egocal-chaos-XXXXXX";
-  if (!mkdtemp(folder)) return 1;
-  options.folder = folder;
+  egocal::testing::ScratchFolder scratch;
+  options.folder = scratch.path().string();
   int result = 1;
   try {
     result = egocal::run(options);
   } catch (const std::exception& error) {
     std::printf("FAILED: %s\n", error.what());
   }
-  if (result == 0)
-    std::filesystem::remove_all(folder);
-  else
-    std::printf("outputs are in %s\n", folder);
+  if (result != 0) {
+    scratch.keep();
+    std::printf("outputs are in %s\n", options.folder.c_str());
+  }
   return result;
 }

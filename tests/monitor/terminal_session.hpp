@@ -31,7 +31,7 @@ using test::read_text;
 using test::Tmux;
 using test::trimmed;
 using test::until;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 inline const std::string program = paths::bin_dir() + "/egocal-monitor";
 inline const std::string feeder = paths::test_dir() + "/egocal-monitor-feeder";

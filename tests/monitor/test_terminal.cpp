@@ -16,6 +16,7 @@
 #include "support/child_process.hpp"
 #include "support/network_namespace.hpp"
 #include "support/paths.hpp"
+#include "support/scratch_folder.hpp"
 #include "terminal_session.hpp"
 #include "tmux.hpp"
 
@@ -205,12 +206,9 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "these tests need tmux\n");
     return 1;
   }
-  char name[] = "/tmp/egocal-terminal-XXXXXX";
-  if (!mkdtemp(name)) return 1;
-  egocal::scratch = name;
+  const egocal::testing::ScratchFolder folder;
+  egocal::scratch = folder.path();
   egocal::recording = egocal::scratch / "scene.log";
   egocal::write_recording();
-  const int result = RUN_ALL_TESTS();
-  std::filesystem::remove_all(egocal::scratch);
-  return result;
+  return RUN_ALL_TESTS();
 }

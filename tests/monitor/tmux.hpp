@@ -3,7 +3,6 @@
 #pragma once
 
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
@@ -15,6 +14,8 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+
+#include "support/scratch_folder.hpp"
 
 namespace egocal::test {
 
@@ -69,26 +70,19 @@ class Tmux {
  public:
   Tmux(int width, int height, const std::string& script) {
     static int count = 0;
-    char name[] = "/tmp/egocal-tmux-XXXXXX";
-    if (!mkdtemp(name)) throw std::runtime_error("mkdtemp failed");
-    folder_ = name;
-    base_ = "env -u TMUX TMUX_TMPDIR=" + folder_.string() + " LC_ALL=C.UTF-8 tmux -L t" +
-            std::to_string(++count) + " -f " + (folder_ / "conf").string() + " ";
-    std::ofstream(folder_ / "conf") << "set -g status off\nset -g remain-on-exit on\nset -s escape-time 0\n";
-    std::ofstream(folder_ / "script") << "cd " << folder_.string() << "\nulimit -c 0\n" << script << "\n";
+    base_ = "env -u TMUX TMUX_TMPDIR=" + folder().string() + " LC_ALL=C.UTF-8 tmux -L t" +
+            std::to_string(++count) + " -f " + (folder() / "conf").string() + " ";
+    std::ofstream(folder() / "conf") << "set -g status off\nset -g remain-on-exit on\nset -s escape-time 0\n";
+    std::ofstream(folder() / "script") << "cd " << folder().string() << "\nulimit -c 0\n" << script << "\n";
     const Output started = output_of(base_ + "new-session -d -s s -x " + std::to_string(width) + " -y " +
-                                     std::to_string(height) + " sh " + (folder_ / "script").string());
+                                     std::to_string(height) + " sh " + (folder() / "script").string());
     if (started.status != 0) throw std::runtime_error("tmux does not start");
   }
-  ~Tmux() {
-    static_cast<void>(std::system((base_ + "kill-server 2>/dev/null").c_str()));
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
+  ~Tmux() { static_cast<void>(std::system((base_ + "kill-server 2>/dev/null").c_str())); }
   Tmux(const Tmux&) = delete;
   Tmux& operator=(const Tmux&) = delete;
 
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return scratch_.path(); }
   std::string run(const std::string& command) const { return output_of(base_ + command).text; }
   /// The text on the screen.
   std::string screen() const { return trimmed(run("capture-pane -p -t s")); }
@@ -113,7 +107,7 @@ class Tmux {
   bool shows(const std::string& text) const { return screen().find(text) != std::string::npos; }
 
  private:
-  std::filesystem::path folder_;
+  testing::ScratchFolder scratch_;
   std::string base_;
 };
 

@@ -5,7 +5,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -21,6 +20,7 @@
 #include "pairing/accumulation_fields.hpp"
 #include "pairing/saved_state.hpp"
 #include "support/file_content.hpp"
+#include "support/scratch_folder.hpp"
 
 namespace egocal::services {
 
@@ -63,13 +63,6 @@ inline std::vector<std::byte> pair_bits(const Accumulation& accumulation) {
 
 class SavedStates : public ::testing::Test {
  protected:
-  SavedStates() {
-    char name[] = "/tmp/egocal-state-XXXXXX";
-    folder = mkdtemp(name);
-    file = folder + "/pairing.state";
-  }
-  ~SavedStates() override { std::filesystem::remove_all(folder); }
-
   void write_state(const bus::Rig& of, std::size_t messages) {
     const auto all = drive("egocal.odometry_t");
     SavedState saved(file, of);
@@ -93,7 +86,8 @@ class SavedStates : public ::testing::Test {
     }
   }
 
-  std::string folder, file;
+  const testing::ScratchFolder scratch;
+  const std::string folder = scratch.path().string(), file = scratch.path("pairing.state");
 };
 
 }  // namespace egocal::services

@@ -19,6 +19,7 @@
 #include "state/state_identity.hpp"
 #include "support/file_content.hpp"
 #include "support/mistakes.hpp"
+#include "support/scratch_folder.hpp"
 #include "support/virtual_time.hpp"
 
 namespace egocal::services::test_saved_memory {
@@ -53,9 +54,6 @@ struct Host {
 class SavedMemories : public ::testing::Test {
  protected:
   SavedMemories() {
-    char name[] = "/tmp/egocal-memory-XXXXXX";
-    folder = mkdtemp(name);
-    file = folder + "/diagnosis.state";
     rig.sensors = {{"left", "ODO_LEFT", bus::OdometryType::odometry, {}},
                    {"right", "ODO_RIGHT", bus::OdometryType::odometry, {}}};
     rig.pairs.resize(1);
@@ -67,10 +65,6 @@ class SavedMemories : public ::testing::Test {
         [this](const verdict_t& message, const bus::Arrival&) { verdicts.push_back(message); });
     observer.subscribe<status_t>(bus::status_channel,
                                  [this](const status_t& message, const bus::Arrival&) { status = message; });
-  }
-  ~SavedMemories() override {
-    host.reset();
-    std::filesystem::remove_all(folder);
   }
 
   void start() {
@@ -118,7 +112,8 @@ class SavedMemories : public ::testing::Test {
     return 0;
   }
 
-  std::string folder, file;
+  const testing::ScratchFolder scratch;
+  const std::string folder = scratch.path().string(), file = scratch.path("diagnosis.state");
   test::VirtualClock clock;
   test::VirtualNetwork network{clock};
   bus::Loop observer{network.transport(), clock, {.handle_signals = false}};
