@@ -1,11 +1,15 @@
 // SPDX-FileCopyrightText: 2026 the egocal developers
 // SPDX-License-Identifier: BSD-3-Clause
 // `egocal solve` where a camera has no scale.
-#include <Eigen/Geometry>
+#include <gmock/gmock.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "rig_command.hpp"
 
@@ -45,6 +49,34 @@ TEST_F(ScaleCommand, TheScaleOfACameraIsFound) {
     const Result refused = run("solve" + files + wrong);
     EXPECT_EQ(refused.code, 2) << wrong;
     EXPECT_TRUE(refused.out.empty()) << wrong;
+  }
+}
+
+/// What each line of the text is about, but for those that belong to the line before.
+std::vector<std::string> headings(const std::string& text) {
+  std::vector<std::string> result;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (!line.empty() && line[0] != ' ') result.push_back(line.substr(0, line.find_first_of(" ,")));
+  return result;
+}
+
+/// "scale         changes along the drive" stood in the text of every drive.
+TEST_F(ScaleCommand, ThatAScaleChangesIsSaidWhereItDoesOnly) {
+  const std::string drive = folder.path("drive");
+  ASSERT_EQ(run("simulate --terrain rough --noise 0.01 --poses 600 --out " + drive).code, 0);
+  const std::string files = " " + drive + "/lidar.tum " + drive + "/camera.tum";
+  const Result plain = run("solve" + files);
+  ASSERT_EQ(plain.code, 0) << plain.error;
+  EXPECT_THAT(headings(plain.out),
+              ::testing::ElementsAre("verdict", "fit", "optimality", "T_a_b", "T_b_a", "motions", "outliers",
+                                     "stream", "stream", "pairing", "certificate", "uncertainty"))
+      << plain.out;
+  for (const std::string option : {" --scale-b 1.001", " --scale-b auto"}) {
+    const Result scaled = run("solve" + option + files);
+    const std::vector<std::string> found = headings(scaled.out);
+    EXPECT_EQ(std::count(found.begin(), found.end(), "scale"), 1) << option << "\n" << scaled.out;
+    EXPECT_EQ(scaled.out.find("changes along the drive"), std::string::npos) << option << "\n" << scaled.out;
   }
 }
 

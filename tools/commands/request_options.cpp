@@ -117,7 +117,9 @@ void read_source(const RequestOptions& options, SolveRequest& request) {
 void read_planes(const RequestOptions& options, PairingOptions& pairing) {
   if (options.planar != (!options.plane_a.empty() || !options.plane_b.empty()) ||
       options.plane_a.empty() != options.plane_b.empty())
-    throw UsageError("--planar: goes with both --plane-a and --plane-b");
+    throw UsageError(options.planar            ? "--planar: goes with both --plane-a and --plane-b"
+                     : options.plane_a.empty() ? "--plane-b: goes with --planar and --plane-a"
+                                               : "--plane-a: goes with --planar and --plane-b");
   if (!options.planar) return;
   pairing.mode = Mode::planar;
   pairing.plane_a = plane("--plane-a", options.plane_a);

@@ -25,6 +25,7 @@ nlohmann::ordered_json segments_json(const SolveResult& result) {
 }
 
 std::string segments_text(const SolveResult& result) {
+  if (!result.course || !result.a) return "";
   return "scale         changes along the drive; the extrinsic is one for all of it\n" +
          scale_course_text(result);
 }
