@@ -13,7 +13,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "egocal/bus/convert.hpp"
 #include "egocal/bus/log_file.hpp"
@@ -280,6 +282,30 @@ TEST_F(Recordings, RosShapedTypesOfLcmAreRead) {
   EXPECT_NEAR(info["streams"][0]["path_length_m"].get<double>(), 4.9, 1e-9);
   EXPECT_NEAR(info["streams"][0]["rate_hz"].get<double>(), 100, 1e-3);
   EXPECT_EQ(parsed("log info --json " + folder.path("ros.log"))["channels"][0]["type"], "nav_msgs.Odometry");
+}
+
+// The path was 0 m and the rate 0 Hz.
+TEST_F(Recordings, InfoMeasuresRowsThatWereWrittenLatestFirst) {
+  std::ifstream in(folder.path("lidar.tum"));
+  std::vector<std::string> rows;
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty() && line[0] != '#') rows.push_back(line);
+  ASSERT_EQ(rows.size(), 400u);
+  std::reverse(rows.begin(), rows.end());
+  std::ofstream out(folder.path("descending.tum"));
+  for (const std::string& row : rows) out << row << '\n';
+  out.close();
+  const json right = parsed("info --json " + folder.path("lidar.tum"))["streams"][0];
+  const json descending = parsed("info --json " + folder.path("descending.tum"))["streams"][0];
+  const double path = right["path_length_m"].get<double>();
+  ASSERT_GT(path, 1);
+  EXPECT_NEAR(descending["path_length_m"].get<double>(), path, 1e-9 * path);
+  EXPECT_NEAR(descending["rate_hz"].get<double>(), right["rate_hz"].get<double>(), 1e-3);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(descending["turning_rad"][i].get<double>(), right["turning_rad"][i].get<double>(), 1e-9);
+  for (const char* key : {"poses", "first_s", "last_s", "span_s", "gaps", "jumps"})
+    EXPECT_EQ(descending[key], right[key]) << key;
+  EXPECT_EQ(descending["times_not_increasing"], 399);
 }
 
 // Commands that take FILE:CHANNEL as those that take a log: it was the line of the library.
