@@ -73,6 +73,7 @@ TEST(SmoothedRotations, WidthOfTheFilterIsFoundInEitherStream) {
     EXPECT_NEAR(found->variance, variance_of_delay(), 0.25 * variance_of_delay());
     EXPECT_GT(found->sigmas(), detail::SmoothedRotationsOptions().sigmas);
     EXPECT_GT(found->gain, detail::SmoothedRotationsOptions().least_gain);
+    EXPECT_GT(found->agreement, detail::SmoothedRotationsOptions().agreement);
     const std::optional<detail::SmoothedRotations> other =
         found_in(streams, clock, side == Side::a ? Side::b : Side::a);
     ASSERT_TRUE(other);
@@ -88,6 +89,7 @@ TEST(SmoothedRotations, AClockIsNoFilter) {
       const std::optional<detail::SmoothedRotations> found = found_in(streams, -late, side);
       ASSERT_TRUE(found);
       EXPECT_LT(found->width(), 0.1 * mean_delay()) << late;
+      EXPECT_LT(found->agreement, detail::SmoothedRotationsOptions().agreement) << late;
     }
     EXPECT_EQ(testing::find(calibrate(streams.a, streams.b), "late_positions_b"), nullptr) << late;
   }

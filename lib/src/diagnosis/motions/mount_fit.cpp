@@ -41,6 +41,30 @@ double MountFit::stddev(const MountNumbers& of) const {
   return std::sqrt(sum * (n - 1) / n);
 }
 
+double MountFit::agreement(const MountNumbers& of, double by) const {
+  MountSum sum = MountSum::Zero();
+  for (const MountSum& part : sums_) sum += part;
+  const MountNumbers best_numbers = best(FreeNumbers::two);
+  MountNumbers unit = MountNumbers::Zero();
+  for (int i = 0; i < unit.size(); ++i)
+    if (sum(i, i) > 0) unit[i] = 1 / std::sqrt(sum(i, i));
+  MountSum scaled = unit.asDiagonal() * sum * unit.asDiagonal();
+  scaled.diagonal().array() += 1e-9;
+  const MountNumbers towards =
+      unit.cwiseProduct(MountNumbers(solve_symmetric(scaled, unit.cwiseProduct(of))));
+  const double size = of.dot(towards);
+  if (!(size > 0)) return 0;
+  // the best numbers of those where the function is less
+  const MountNumbers less = best_numbers - towards * (by / size);
+  double total = 0, squares = 0;
+  for (std::size_t part = 0; part < options_.parts; ++part) {
+    const double adds = towards.dot(right_[part] - sums_[part] * less);
+    total += adds;
+    squares += adds * adds;
+  }
+  return squares > 0 ? total / std::sqrt(squares) : 0;
+}
+
 double MountFit::gain(const MountNumbers& x, const MountNumbers& y) const {
   double sum = 0;
   for (const LinearMotion& motion : motions_)

@@ -40,6 +40,12 @@ class MountFit {
   MountNumbers best(FreeNumbers free) const { return without(options_.parts, free); }
   /// Standard deviation of a linear function of the numbers, by omitting parts. of: its coefficients.
   double stddev(const MountNumbers& of) const;
+  /// By how much the parts agree that a linear function of the numbers is larger than `best - by` says: the
+  /// sum of what each part adds to it, over the root of the sum of their squares. Where it is not, and the
+  /// parts err to either side alike, this exceeds x with a probability of at most exp(-x^2 / 2), whatever
+  /// their sizes and their distribution are. of: its coefficients. by: that much less than the best numbers
+  /// give.
+  double agreement(const MountNumbers& of, double by) const;
   /// Mean logarithm of the squares at x over those at y, above the noise.
   double gain(const MountNumbers& x, const MountNumbers& y) const;
 

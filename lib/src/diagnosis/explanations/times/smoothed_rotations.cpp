@@ -137,8 +137,9 @@ std::optional<Vector6d> moved_by_positions_on_time(const OnClock& clock, Side si
 /// Positions that may be on time beside smoothed rotations of their stream.
 struct OnTime {
   SmoothedRotations rotations;
-  double delay = 0;  ///< of the rotations [s]
-  Vector6d moved;    ///< of moved_by_positions_on_time()
+  double delay = 0;   ///< of the rotations [s]
+  Vector6d moved;     ///< of moved_by_positions_on_time()
+  bool clear = true;  ///< in size as well; else in most parts of the drive alone
 };
 
 /// offset: of the clock that suits the rotations from the one in force [s]; empty: the clock in force suits
@@ -147,7 +148,10 @@ std::optional<OnTime> on_time(const OnClock& clock, Side side, std::optional<dou
                               const SmoothedRotationsOptions& options) {
   const std::optional<SmoothedRotations> found =
       smoothed_rotations(clock.instants, clock.explained, side, options);
-  if (!found || !is_smoothed(*found, options)) return std::nullopt;
+  if (!found) return std::nullopt;
+  const bool clear = is_smoothed(*found, options);
+  // beside a clock there is a delay to compare the width with, and the parts of the drive decide
+  if (!clear && !(offset && found->agreement > options.agreement)) return std::nullopt;
   double delay = found->width();
   if (offset) {
     delay = found->delay + (side == Side::b ? -*offset : *offset);
@@ -155,7 +159,7 @@ std::optional<OnTime> on_time(const OnClock& clock, Side side, std::optional<dou
   }
   const std::optional<Vector6d> moved = moved_by_positions_on_time(clock, side, delay, options);
   if (!moved) return std::nullopt;
-  return OnTime{*found, delay, *moved};
+  return OnTime{*found, delay, *moved, clear};
 }
 
 /// Something else that the rotations may look smoothed by, or that is named for it already.
@@ -208,8 +212,10 @@ std::optional<SmoothedRotations> smoothed_rotations(const Instants& instants, co
   found.side = side;
   found.delay = x[mean_delay];
   found.variance = found.delay * found.delay - 2 * x[of_acceleration];
-  found.variance_stddev =
-      fit.stddev(2 * found.delay * MountNumbers::Unit(mean_delay) - 2 * MountNumbers::Unit(of_acceleration));
+  const MountNumbers of_variance =
+      2 * found.delay * MountNumbers::Unit(mean_delay) - 2 * MountNumbers::Unit(of_acceleration);
+  found.variance_stddev = fit.stddev(of_variance);
+  found.agreement = fit.agreement(of_variance, found.variance);
   found.gain = fit.gain(fit.best(FreeNumbers::first), x);
   return found;
 }
@@ -232,7 +238,8 @@ void name_smoothed_rotations(const Evidence& evidence, double max_gap, const Dia
   if (!found) found = on_time(clock, Side::a, offset, smoothed);
   if (!found) return;
   const Vector6d moved = in_known_directions(found->moved, answered.observability);
-  if (!matters(moved, answered, options, smoothed.least_move, smoothed.matters)) return;
+  const double stddevs = found->clear ? smoothed.matters : smoothed.matters_by_agreement;
+  if (!matters(moved, answered, options, smoothed.least_move, stddevs)) return;
   const DualQuaternion on_its_clock = certain_clock ? to_dual_quaternion(*named->T_a_b) : answered.T_a_b,
                        T_a_b = frame_a_moved(on_its_clock, moved);
   findings.insert(certain_clock ? std::next(named) : findings.begin(), worded_smoothed(*found, T_a_b));
