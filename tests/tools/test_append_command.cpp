@@ -63,6 +63,58 @@ TEST_F(AppendCommand, AMountThatDiffersBetweenTwoDrivesIsNamedSo) {
   EXPECT_TRUE(same["findings"].empty()) << same["findings"];
 }
 
+// One offset for all drives was half-way between theirs, with a drift that no clock had.
+TEST_F(AppendCommand, DrivesWhoseClocksWereSetAnewHaveAnOffsetEach) {
+  const std::string first = drive_of(1, 0), second = drive_of(2, 0, "--clock-offset camera=0.3"),
+                    third = drive_of(3, 0, "--clock-offset camera=-0.08");
+  const std::string all = first + " --append" + second + " --append" + third + " --time-offset auto";
+  const nlohmann::json found = run("solve --json" + all).object();
+  EXPECT_EQ(found["verdict"], "good") << found["reason"];
+  EXPECT_TRUE(found["findings"].empty()) << found["findings"];
+  EXPECT_TRUE(found["time_offset_s"].is_null());
+  EXPECT_FALSE(found.contains("time_offset_estimate"));
+  ASSERT_EQ(found["time_offsets"].size(), 3u);
+  const double offsets[] = {0, -0.3, 0.08};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const nlohmann::json& one = found["time_offsets"][k];
+    EXPECT_NEAR(one["seconds"].get<double>(), offsets[k], 2e-3) << k;
+    EXPECT_TRUE(one["drive"].get<std::string>().ends_with("drive" + std::to_string(k + 1) + "/lidar.tum"));
+  }
+  EXPECT_NEAR(found["translation"][0].get<double>(), 0.5, 0.03);
+  const std::string text = run("solve" + all).out;
+  EXPECT_NE(text.find("s added to b in drive 2 ("), std::string::npos) << text;
+  EXPECT_EQ(text.find("clock drift"), std::string::npos) << text;
+  // one clock: one estimate
+  const nlohmann::json one =
+      run("solve --json" + first + " --append" + drive_of(4, 0) + " --time-offset auto").object();
+  EXPECT_FALSE(one.contains("time_offsets"));
+  EXPECT_NEAR(one["time_offset_s"].get<double>(), 0, 2e-3);
+}
+
+// The same in a rig: the sensor's offsets are a note.
+TEST_F(AppendCommand, ASensorOfARigWhoseClockWasSetAnewHasAnOffsetForEachDrive) {
+  std::string names[2];
+  for (int k = 0; k < 2; ++k) {
+    names[k] = folder.path("rig" + std::to_string(k));
+    ASSERT_EQ(run("simulate --poses 1200 --roughness 0.3 --noise 0.01 --seed " + std::to_string(11 + k) +
+                  " --sensor lidar=1,0,1.8,1,0,0,0 --sensor camera=1.5,0.2,1.5,0.5,-0.5,0.5,-0.5"
+                  " --sensor imu=0.2,0.1,1,1,0,0,0 --clock-offset camera=" +
+                  (k == 0 ? "0.1" : "-0.2") + " --out " + names[k])
+                  .code,
+              0);
+  }
+  const auto drive = [](const std::string& name) {
+    return " " + name + "/lidar.tum " + name + "/camera.tum " + name + "/imu.tum";
+  };
+  const Result result =
+      run("solve --json" + drive(names[0]) + " --append" + drive(names[1]) + " --time-offset auto");
+  EXPECT_EQ(result.code, 0) << result.error;
+  const nlohmann::json found = result.object();
+  for (const nlohmann::json& pair : found["pairs"]) EXPECT_EQ(pair["verdict"], "good") << pair["reason"];
+  EXPECT_NE(result.error.find("its clock differs between the drives: -0.1"), std::string::npos)
+      << result.error;
+}
+
 // Each drive by itself was contradictory, and both together were "good", with an answer 0.8 deg off.
 TEST_F(AppendCommand, AFaultThatEachDriveShowsIsNotHiddenByTheOther) {
   const std::string creep = "--creep camera=10:110:0,0,0,0,0,3";

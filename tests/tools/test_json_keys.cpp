@@ -57,6 +57,7 @@ class JsonKeys : public ::testing::Test {
 
 TEST_F(JsonKeys, OfSolveAreThoseOfThePage) {
   simulate("drive", "--poses 400 --noise 0.01");
+  simulate("later", "--poses 400 --noise 0.01 --seed 2 --clock-offset camera=0.2");
   simulate("bumped", "--poses 1200 --terrain free --bump camera=60:0,0,0,0,0,5");
   simulate("scaled", "--poses 600 --terrain free --scale camera=4");
   const std::string drive = files("drive");
@@ -68,6 +69,8 @@ TEST_F(JsonKeys, OfSolveAreThoseOfThePage) {
   EXPECT_EQ(last["settings"]["stride"], "auto");
   EXPECT_NE(last["command"].get<std::string>().find("egocal solve"), std::string::npos);
   run("solve", drive + " --stride 2 --weights 1:0.1 --time-offset auto");
+  run("solve", drive + " --append " + files("later") + " --time-offset auto");
+  EXPECT_EQ(last["time_offsets"].size(), 2u);
   simulate("flat", "--poses 400 --noise 0.01 --terrain flat");
   run("solve", files("flat") + " --nominal 0.5,0.2,-0.3,0.5,-0.5,0.5,-0.5");
   EXPECT_EQ(last["from_nominal"], json({"z"}));

@@ -10,6 +10,7 @@
 #include "commands/request_options.hpp"
 #include "egocal/io/whole_file.hpp"
 #include "offline/pair/unit.hpp"
+#include "offline/printing/report.hpp"
 #include "offline/printing/samples.hpp"
 #include "offline/printing/scale.hpp"
 #include "warnings.hpp"
@@ -39,6 +40,7 @@ ReportInput report_input(const SolveRequest& request, SolveResult result, const 
   input.unit = unit_of_lengths(result);
   input.eye_to_hand = result.eye_to_hand;
   input.scale_course = scale_course_text(result);
+  input.clocks = clocks_text(result.clocks);
   input.options = request.calibration;
   input.options.pairing.time_offset = result.calibration.time_offset_applied;
   // the streams of the result are as they were solved

@@ -116,7 +116,10 @@ std::string uncertainty(const Calibration& calibration, const char* frame) {
          "odometries.</p>\n";
 }
 
-std::string clock_rows(const Calibration& calibration) {
+std::string clock_rows(const ReportInput& input) {
+  if (!input.clocks.empty())
+    return row("time offset", "of each drive by itself<pre>" + escaped(input.clocks) + "</pre>");
+  const Calibration& calibration = input.calibration;
   std::string table;
   table += row("time offset", fmt::format("{:.4f} s added to b", calibration.time_offset_applied));
   if (calibration.time_offset)
@@ -141,7 +144,7 @@ std::string rows_of_motions(const ReportInput& input) {
                                  calibration.counts.poses_b, calibration.counts.synchronised));
   table += row("not used", fmt::format("{} outliers, {}", calibration.counts.outliers,
                                        escaped(rejections_in_words(calibration.counts))));
-  return streams ? table + clock_rows(calibration) : table;
+  return streams ? table + clock_rows(input) : table;
 }
 
 std::string settings(const ReportInput& input) {

@@ -31,6 +31,7 @@ struct ReportInput {
   std::vector<std::string> warnings;  ///< about what was read
   bool eye_to_hand = false;           ///< of samples: the camera stands beside the arm
   std::string scale_course;           ///< how the scale changes along the drive; empty: it does not
+  std::string clocks;                 ///< of each drive, where drives have clocks of their own; empty: one
   std::string unit = "m";             ///< of lengths: "m", or "unit of b"
   std::string command;                ///< the command line
   std::optional<Pose> truth;

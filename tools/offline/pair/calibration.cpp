@@ -109,6 +109,12 @@ void answer_sensors(const SolveRequest& request, SolveResult& result) {
     result.warnings.push_back("these look like still poses of an arm rather than streams: try " +
                               request.solve + "--samples");
   options.diagnosis.unit = unit_of_answer(request, result);
+  if (options.estimate_time_offset)
+    result.clocks = put_drives_on_clock_of_a(drives, 0, 1, motions.a, motions.b, options);
+  if (!result.clocks.empty()) {
+    options.estimate_time_offset = false;
+    options.pairing.time_offset = 0;
+  }
   Terms terms;
   terms.solve = request.solve;
   std::string note;

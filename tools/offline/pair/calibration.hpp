@@ -11,6 +11,7 @@
 #include "egocal/io/recording.hpp"
 #include "egocal/samples/calibrate_samples.hpp"
 #include "egocal/scale/scale_course.hpp"
+#include "offline/drives/clocks_of_drives.hpp"
 
 namespace egocal::tools {
 
@@ -59,6 +60,7 @@ struct SolveResult {
   std::string note;                   ///< of a baseline: why its answer is not valid
   std::optional<StreamSpan> a, b;     ///< not for a file of pairs
   std::optional<ScaleCourse> course;  ///< where the estimated scale changes along the drive
+  std::vector<ClockOfDrive> clocks;   ///< of each drive, where drives have clocks of their own
   double solve_us = 0;                ///< the solve alone, median of repeats [us]
   std::optional<SampleCalibration> samples;  ///< of still poses; its calibration is the one above
   MatchedSamples matched;                    ///< the rows that make them

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "offline/pair/calibration.hpp"
 
@@ -28,6 +30,8 @@ struct AnswerFrames {
 AnswerFrames frames_of_answer(bool eye_to_hand);
 /// The offset and the drift of b's clock, a line each; empty: there are none.
 std::string clocks_text(const Calibration& calibration);
+/// The same of drives that have clocks of their own, a line for each drive.
+std::string clocks_text(const std::vector<ClockOfDrive>& clocks);
 /// The result for people: degrees and centimetres, both directions of T, fit and optimality and uncertainty
 /// kept apart.
 std::string report_text(const SolveResult& result, const std::optional<Pose>& truth);

@@ -85,6 +85,15 @@ nlohmann::ordered_json report_json(const SolveResult& result, const std::optiona
                                                            : static_cast<double>(calibration.choice.stride);
   json["choice"] = calibration.choice.reason;
   json["time_offset_s"] = calibration.time_offset_applied;
+  if (!result.clocks.empty()) {
+    json["time_offset_s"] = nullptr;
+    json["time_offsets"] = nlohmann::ordered_json::array();
+    for (const ClockOfDrive& clock : result.clocks) {
+      nlohmann::ordered_json one = {{"drive", clock.name}};
+      one.update(time_offset_json(clock.estimate));
+      json["time_offsets"].push_back(std::move(one));
+    }
+  }
   if (calibration.time_offset) json["time_offset_estimate"] = time_offset_json(*calibration.time_offset);
   if (result.samples) json["samples"] = samples_json(result);
   if (calibration.scale) json["scale"] = scale_json(result);

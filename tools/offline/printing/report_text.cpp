@@ -128,6 +128,18 @@ AnswerFrames frames_of_answer(bool eye_to_hand) {
   return {"T_a_b, pose of sensor b in sensor a (p_a = T_a_b p_b)", "a"};
 }
 
+std::string clocks_text(const std::vector<ClockOfDrive>& clocks) {
+  std::string text;
+  for (std::size_t k = 0; k < clocks.size(); ++k) {
+    const TimeOffset& offset = clocks[k].estimate;
+    text +=
+        fmt::format("time offset   {:.4f} +- {:.4f} s added to b in drive {} ({}; correlation {:.2f}{})\n",
+                    offset.seconds, offset.stddev, k + 1, clocks[k].name, offset.correlation,
+                    offset.drifts ? fmt::format("; drift {:.1f} us/s, corrected", 1e6 * offset.rate) : "");
+  }
+  return text;
+}
+
 std::string clocks_text(const Calibration& calibration) {
   std::string text;
   if (calibration.time_offset)
@@ -155,7 +167,7 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
   text += outliers_text(calibration);
   text += pairing_text(result);
   text += scale_text(result);
-  text += clocks_text(calibration);
+  text += result.clocks.empty() ? clocks_text(calibration) : clocks_text(result.clocks);
   text += certificate_text(result);
   text += uncertainty_text(calibration, frames_of_answer(result.eye_to_hand).frame);
   if (truth) {

@@ -217,7 +217,11 @@ void answer_rig(const RigRequest& request, RigReport& report) {
   const Drives drives = append_drives(request, settings, trajectories, report);
   for (std::size_t k = 0; k < trajectories.size(); ++k)
     if (settings.scales[k] != 1) trajectories[k] = scaled(trajectories[k], settings.scales[k]);
-  const std::vector<ClockOfSensor> clocks = synchronise(request, settings, trajectories);
+  const std::vector<ClockOfSensor> clocks = synchronise(request, settings, drives, trajectories);
+  for (std::size_t k = 0; k < clocks.size(); ++k)
+    if (!clocks[k].drives.empty())
+      report.warnings.push_back(
+          report.names[k] + ": its clock differs between the drives: " + clocks_in_words(clocks[k].drives));
   put_outcomes(calibrate_all(settings, trajectories, drives, clocks, request.progress), settings, report);
   for (const RigPairSettings& pair : settings.pairs)
     if (std::none_of(report.unsolved.begin(), report.unsolved.end(),

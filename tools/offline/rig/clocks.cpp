@@ -19,7 +19,9 @@ namespace {
 /// (ClockOptions::least_change).
 constexpr double least_contradiction = 5e-3;
 
+/// Sensors on one clock so far.
 struct Clocks {
+  const Drives& drives;
   std::vector<ClockOfSensor> of_sensor;
   std::vector<bool> known;
   std::vector<bool> not_found;  ///< from none of those that it was compared with
@@ -41,6 +43,17 @@ void put(std::size_t sensor, double offset, std::vector<Trajectory>& trajectorie
 /// found from that one.
 bool find(std::size_t known, std::size_t sensor, double max_gap, std::vector<Trajectory>& trajectories,
           Clocks& clocks) {
+  CalibrationOptions options;
+  options.pairing.max_gap = max_gap;
+  std::vector<ClockOfDrive> of_drives = put_drives_on_clock_of_a(
+      clocks.drives, known, sensor, trajectories[known], trajectories[sensor], options);
+  if (!of_drives.empty()) {
+    clocks.not_found[sensor] = false;
+    clocks.known[sensor] = true;
+    clocks.of_sensor[sensor] = {of_drives.front().estimate.seconds, 0, of_drives,
+                                clocks.of_sensor[known].group};
+    return true;
+  }
   const auto offset = estimate_time_offset(trajectories[known], trajectories[sensor], {.max_gap = max_gap});
   clocks.not_found[sensor] = !offset;
   if (!offset) return false;
@@ -93,8 +106,8 @@ void require_one_clock_each(const RigRequest& request, const RigSettings& settin
 }  // namespace
 
 std::vector<ClockOfSensor> synchronise(const RigRequest& request, const RigSettings& settings,
-                                       std::vector<Trajectory>& trajectories) {
-  Clocks clocks{std::vector<ClockOfSensor>(trajectories.size()),
+                                       const Drives& drives, std::vector<Trajectory>& trajectories) {
+  Clocks clocks{drives, std::vector<ClockOfSensor>(trajectories.size()),
                 std::vector<bool>(trajectories.size(), false), std::vector<bool>(trajectories.size(), false)};
   clocks.known.front() = true;
   if (request.calibration.estimate_time_offset) {

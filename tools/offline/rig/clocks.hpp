@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "egocal/pairing/trajectory.hpp"
+#include "offline/drives/clocks_of_drives.hpp"
 #include "offline/rig/settings.hpp"
 
 namespace egocal::tools {
@@ -14,6 +15,7 @@ namespace egocal::tools {
 /// offset fits as well [s]; 0: none does.
 struct ClockOfSensor {
   double offset = 0, period = 0;
+  std::vector<ClockOfDrive> drives;  ///< where drives have clocks of their own; `offset` is that of the first
   std::size_t group = 0;  ///< sensors of one group are on one clock: between two no offset was found
 };
 
@@ -22,6 +24,6 @@ struct ClockOfSensor {
 /// as one that is frozen, begins a group of its own. Throws Error where those of the file contradict each
 /// other.
 std::vector<ClockOfSensor> synchronise(const RigRequest& request, const RigSettings& settings,
-                                       std::vector<Trajectory>& trajectories);
+                                       const Drives& drives, std::vector<Trajectory>& trajectories);
 
 }  // namespace egocal::tools

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 the egocal developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "offline/drives/clocks_of_drives.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "egocal/error.hpp"
+#include "egocal/pairing/options.hpp"
+#include "egocal/pairing/time_offset.hpp"
+#include "egocal/scale/scale_statistics.hpp"
+
+namespace egocal::tools {
+
+namespace {
+
+using Estimates = std::vector<std::optional<TimeOffset>>;
+
+/// Whether the estimate of a drive alone may tell it from others, as one of a live clock is trusted.
+bool is_trusted(const std::optional<TimeOffset>& offset) {
+  const ClockOptions least;
+  return offset && offset->correlation >= least.least_correlation && offset->stddev <= least.largest_stddev &&
+         offset->inliers >= least.least_inliers;
+}
+
+bool differ(const TimeOffset& x, const TimeOffset& y, const ClocksOfDrivesOptions& options) {
+  const double change = std::abs(x.seconds - y.seconds);
+  return change > options.least_change && change > options.change_sigmas * std::hypot(x.stddev, y.stddev);
+}
+
+bool any_differ(const Estimates& estimates, const ClocksOfDrivesOptions& options) {
+  for (const std::optional<TimeOffset>& x : estimates)
+    for (const std::optional<TimeOffset>& y : estimates)
+      if (is_trusted(x) && is_trusted(y) && differ(*x, *y, options)) return true;
+  return false;
+}
+
+bool in_order(const Trajectory& trajectory) {
+  const auto not_later = [](const StampedPose& x, const StampedPose& y) { return x.time_us >= y.time_us; };
+  return std::adjacent_find(trajectory.begin(), trajectory.end(), not_later) == trajectory.end();
+}
+
+}  // namespace
+
+std::vector<ClockOfDrive> put_drives_on_clock_of_a(const Drives& drives, std::size_t sensor_a,
+                                                   std::size_t sensor_b, const Trajectory& a, Trajectory& b,
+                                                   const CalibrationOptions& options,
+                                                   const ClocksOfDrivesOptions& clocks) {
+  if (drives.size() < 2) return {};
+  const auto lengths = [&](Trajectory part, Side side) {
+    return !options.estimate_scale && options.scale_side == side ? scaled(std::move(part), options.scale)
+                                                                 : part;
+  };
+  Estimates estimates;
+  for (std::size_t k = 0; k < drives.size(); ++k) {
+    estimates.push_back(
+        estimate_time_offset(lengths(reread(drives.part(a, k, sensor_a), options.read_a), Side::a),
+                             lengths(reread(drives.part(b, k, sensor_b), options.read_b), Side::b),
+                             {.max_gap = options.pairing.max_gap}));
+    if (estimates.back() && estimates.back()->rival) return {};
+  }
+  if (!any_differ(estimates, clocks)) return {};
+  std::vector<ClockOfDrive> result;
+  Trajectory corrected;
+  for (std::size_t k = 0; k < drives.size(); ++k) {
+    if (!estimates[k])
+      throw Error(
+          fmt::format("{}: the time offset of this drive cannot be estimated, it is too short or never "
+                      "turns, and the clocks of the other drives differ: leave it out",
+                      drives.name(k)));
+    const Trajectory part = on_clock_of_a(*estimates[k], drives.part(b, k, sensor_b));
+    corrected.insert(corrected.end(), part.begin(), part.end());
+    result.push_back({drives.name(k), *estimates[k]});
+  }
+  if (!in_order(corrected)) return {};  // a stream of one drive reaches into the next one
+  b = std::move(corrected);
+  return result;
+}
+
+std::string clocks_in_words(const std::vector<ClockOfDrive>& clocks) {
+  std::string text;
+  for (const ClockOfDrive& clock : clocks)
+    text += fmt::format("{}{:.4f} s ({})", text.empty() ? "" : ", ", clock.estimate.seconds, clock.name);
+  return text + " added to its stamps";
+}
+
+}  // namespace egocal::tools
