@@ -110,7 +110,8 @@ TEST_F(AppendCommand, ASensorOfARigWhoseClockWasSetAnewHasAnOffsetForEachDrive) 
       run("solve --json" + drive(names[0]) + " --append" + drive(names[1]) + " --time-offset auto");
   EXPECT_EQ(result.code, 0) << result.error;
   const nlohmann::json found = result.object();
-  for (const nlohmann::json& pair : found["pairs"]) EXPECT_EQ(pair["verdict"], "good") << pair["reason"];
+  for (const nlohmann::json& pair : found.at("extrinsics"))
+    EXPECT_EQ(pair["verdict"], "good") << pair["reason"];
   EXPECT_NE(result.error.find("its clock differs between the drives: -0.1"), std::string::npos)
       << result.error;
 }
