@@ -112,8 +112,11 @@ TEST_F(AppendCommand, ASensorOfARigWhoseClockWasSetAnewHasAnOffsetForEachDrive) 
   const nlohmann::json found = result.object();
   for (const nlohmann::json& pair : found.at("extrinsics"))
     EXPECT_EQ(pair["verdict"], "good") << pair["reason"];
-  EXPECT_NE(result.error.find("its clock differs between the drives: -0.1"), std::string::npos)
-      << result.error;
+  const std::string words = "camera: its clock differs between the drives: ";
+  const std::size_t at = result.error.find(words);
+  ASSERT_NE(at, std::string::npos) << result.error;
+  EXPECT_NEAR(std::stod(result.error.substr(at + words.size())), -0.1, 2e-3) << result.error;
+  EXPECT_NEAR(std::stod(result.error.substr(result.error.find("), ", at) + 3)), 0.2, 2e-3) << result.error;
 }
 
 // Each drive by itself was contradictory, and both together were "good", with an answer 0.8 deg off.
