@@ -14,8 +14,8 @@
 #include "egocal/in_words.hpp"
 #include "egocal/io/stream_summary.hpp"
 #include "egocal/microseconds.hpp"
-#include "egocal/pairing/trajectory.hpp"
 #include "offline/printing/provenance.hpp"
+#include "offline/reading/either_way_summary.hpp"
 #include "offline/reading/trajectory_source.hpp"
 
 namespace egocal::tools {
@@ -52,31 +52,6 @@ void refuse_repairs_of(const std::string& name, const Contents& contents) {
                      counted(row.summary.out_of_order, "time") +
                          " not later than the one before it, expected increasing times");
 }
-
-/// Summarises a stream in both directions of time, in constant memory: rows that were written latest first
-/// have their path and their rate, too.
-class EitherWaySummariser {
- public:
-  void add(const StampedPose& pose) {
-    forward_.add(pose);
-    StampedPose mirrored = pose;
-    mirrored.time_us = -pose.time_us;
-    backward_.add(mirrored);
-  }
-  /// Of the rows from the last to the first where most descend. Times and their order are those of the file.
-  StreamSummary summary() const {
-    const StreamSummary forward = forward_.summary();
-    StreamSummary backward = backward_.summary();
-    if (backward.out_of_order >= forward.out_of_order) return forward;
-    backward.first_us = forward.first_us;
-    backward.last_us = forward.last_us;
-    backward.out_of_order = forward.out_of_order;
-    return backward;
-  }
-
- private:
-  StreamSummariser forward_, backward_;
-};
 
 /// One pass over the file; of a chain of transforms the resolved poses.
 Contents read_contents(const InfoOptions& options) {
