@@ -139,6 +139,23 @@ TEST_F(Commands, ALogWithoutASensorOfTheRigIsMadeWithAWarning) {
   EXPECT_EQ(egocal(create + lidar + " --from camera=" + path("d/camera.tum")).err, "");
 }
 
+// The player waited for 17 minutes without a word.
+TEST_F(Commands, ALogOfSensorsThatShareNoTimeIsMadeWithAWarning) {
+  ASSERT_EQ(egocal("simulate --poses 20 --out " + path("d") + " --rig-out " + path("d.toml")).code, 0);
+  std::istringstream rows(read(path("d/camera.tum")));
+  std::ostringstream later;
+  later.precision(17);
+  for (std::string row; std::getline(rows, row);) {
+    if (row.empty() || row[0] == '#') continue;
+    const std::size_t end = row.find(' ');
+    later << std::stod(row.substr(0, end)) + 1000 << row.substr(end) << '\n';
+  }
+  const Outcome apart = egocal("log create " + path("d.toml") + " --out " + path("c.log") + " --from lidar=" +
+                               path("d/lidar.tum") + " --from camera=" + file("later.tum", later.str()));
+  EXPECT_EQ(apart.code, 0);
+  EXPECT_THAT(apart.err, HasSubstr("egocal: warning: lidar and camera share no time: 998.1 s lie between"));
+}
+
 TEST_F(Commands, WhatGoesTogetherIsNamed) {
   expect_refusal(egocal("compare --stride 2"), 2,
                  "--stride: goes with A, which is not given; see egocal compare --help");

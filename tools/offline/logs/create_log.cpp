@@ -38,6 +38,27 @@ std::vector<Entry> in_order(const std::vector<const bus::Sensor*>& sensors,
   return entries;
 }
 
+/// Warns of each pair whose sensors share no time: nothing of it can be paired, and a player waits in
+/// between.
+void warn_of_times_apart(const bus::Rig& rig, const std::vector<const bus::Sensor*>& sensors,
+                         const std::vector<Trajectory>& trajectories, std::vector<std::string>& warnings) {
+  const auto poses_of = [&](const std::string& name) -> const Trajectory* {
+    for (std::size_t k = 0; k < sensors.size(); ++k)
+      if (sensors[k]->name == name && !trajectories[k].empty()) return &trajectories[k];
+    return nullptr;
+  };
+  for (const bus::PairConfig& pair : rig.pairs) {
+    const Trajectory *a = poses_of(pair.a), *b = poses_of(pair.b);
+    if (!a || !b) continue;
+    const std::int64_t apart_us =
+        std::max(a->front().time_us, b->front().time_us) - std::min(a->back().time_us, b->back().time_us);
+    if (apart_us > 0)
+      warnings.push_back(fmt::format(
+          "{} and {} share no time: {:.1f} s lie between their poses, and the player waits that long", pair.a,
+          pair.b, to_seconds(apart_us)));
+  }
+}
+
 /// shift_us: added to all times.
 void write(const std::vector<Entry>& entries, std::int64_t shift_us, const std::string& out) {
   bus::LogWriter log(out);
@@ -72,6 +93,7 @@ std::vector<std::string> create_log(const std::string& rig_file, const std::vect
     if (!given.contains(sensor.name))
       warnings.push_back("no --from of the sensor " + sensor.name + ": its channel " + sensor.channel +
                          " is not in the log");
+  warn_of_times_apart(rig, sensors, trajectories, warnings);
   const std::vector<Entry> entries = in_order(sensors, trajectories);
   // Times that begin near zero are no dates; on the wire they must be plausible ones.
   const std::int64_t first_us = entries.front().pose->time_us,
