@@ -136,6 +136,9 @@ bool is_rig(const RigOptionsTyped& options) {
 void solve_rig_command(const RequestOptions& typed, const RigOptionsTyped& rig, const RigOutput& output) {
   refuse_options_of_two(typed);
   if (!typed.source.log.empty()) refuse_reading_options(typed.reading, "--log");
+  if (!output.format.empty() && !holds_tree(*extrinsic_format_from_name(output.format)))
+    throw UsageError("--format " + output.format +
+                     ": holds one extrinsic; a rig can be written as urdf, ros, ros-launch, yaml or json");
   const SolveRequest common = common_request(typed);
   RigRequest request = rig_request(typed, rig);
   request.calibration = common.calibration;

@@ -127,12 +127,17 @@ ExtrinsicTree extrinsic_tree(const std::vector<NamedExtrinsic>& pairs, const std
   return tree;
 }
 
+bool holds_tree(ExtrinsicFormat format) {
+  using enum ExtrinsicFormat;
+  return format == urdf || format == ros || format == ros_launch || format == yaml || format == json;
+}
+
 std::string extrinsic_tree_text(const ExtrinsicTree& tree, ExtrinsicFormat format) {
   refuse_equal_names(tree.edges);
   if (format == ExtrinsicFormat::urdf) return robot_text(tree);
   if (format == ExtrinsicFormat::ros_launch) return launch_text(tree);
   if (format == ExtrinsicFormat::json) return json_tree(tree);
-  if (format != ExtrinsicFormat::ros && format != ExtrinsicFormat::yaml)
+  if (!holds_tree(format))
     throw Error(std::string(to_string(format)) +
                 ": holds one extrinsic; a tree can be written as urdf, ros, ros-launch, yaml or json");
   std::string text;

@@ -23,6 +23,9 @@ struct ExtrinsicTree {
 /// not connect every sensor, naming one that cannot be reached.
 ExtrinsicTree extrinsic_tree(const std::vector<NamedExtrinsic>& pairs, const std::string& root = "");
 
+/// Whether a file of this format holds several extrinsics: urdf, ros, ros_launch, yaml and json do.
+bool holds_tree(ExtrinsicFormat format);
+
 /// The whole text of a file: urdf (a robot), ros, ros_launch, yaml (one document an edge), json (`root` and
 /// `edges`). Throws Error for the formats that hold one extrinsic only.
 std::string extrinsic_tree_text(const ExtrinsicTree& tree, ExtrinsicFormat format);
