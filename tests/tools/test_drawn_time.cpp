@@ -39,6 +39,8 @@ TEST(DrawnTime, OmitsWhatIsBetweenDrives) {
   EXPECT_EQ(time.seconds(hour_us + 4'500'000), 14.5);
   EXPECT_EQ(time.seconds(2 * hour_us + 1'000'000), 31);
   EXPECT_EQ(time.part_of(15'000'000), 0U);
+  EXPECT_EQ(time.part_of(16'000'000), 0U) << "another stream goes on for a second";
+  EXPECT_EQ(time.part_of(hour_us - 1'000'000), 1U) << "or begins a second earlier";
   EXPECT_EQ(time.part_of(hour_us), 1U);
   EXPECT_EQ(time.part_of(2 * hour_us), 2U);
 }

@@ -34,8 +34,9 @@ double DrawnTime::seconds(std::int64_t time_us) const {
 }
 
 std::size_t DrawnTime::part_of(std::int64_t time_us) const {
-  return static_cast<std::size_t>(std::count_if(breaks_.begin(), breaks_.end(),
-                                                [&](const Break& one) { return one.begin_us < time_us; }));
+  return static_cast<std::size_t>(std::count_if(breaks_.begin(), breaks_.end(), [&](const Break& one) {
+    return one.begin_us + (one.end_us - one.begin_us) / 2 < time_us;
+  }));
 }
 
 }  // namespace egocal::tools

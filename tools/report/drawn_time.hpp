@@ -26,7 +26,8 @@ class DrawnTime {
 
   /// The place of a time on the axis [s]. A time within a break is where the break is.
   double seconds(std::int64_t time_us) const;
-  /// How many breaks begin before a time: the part of the recording that it belongs to.
+  /// The part of the recording that a time belongs to: how many breaks have their middle before it. Of
+  /// another stream than a the poses of a part begin and end a little earlier or later.
   std::size_t part_of(std::int64_t time_us) const;
   /// Where breaks are on the axis [s].
   const std::vector<double>& breaks() const { return places_; }
