@@ -29,7 +29,7 @@ class ScratchFolder {
   ScratchFolder& operator=(const ScratchFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  /// Whoever looks for the cause of a failure finds the folder afterwards.
+  /// Leaves the folder on disk, so that the cause of a failure can be found in it.
   void keep() { kept_ = true; }
   std::string path(const std::string& name) const { return (path_ / name).string(); }
   /// Writes the file and returns its path.
