@@ -80,9 +80,7 @@ void add_export(cli::App program) {
   command.add_option("--lcm-url", options->url, "LCM URL instead of the rig's").needs(rig);
   command.add_option("--log", options->log, "LCM log of a session: takes the answer that counted at its end");
   const cli::Option pair = command.add_option("--pair", options->pair, "A,B where there are several");
-  command
-      .add_flag("--all", options->all,
-                "all pairs of the rig as one tree: urdf, ros, ros-launch, yaml or json")
+  command.add_flag("--all", options->all, "all pairs of the rig as one tree: " + tree_format_names())
       .excludes(pair);
   command.add_option("--format", options->format)
       .check(cli::Check::one_of(extrinsic_format_names()))

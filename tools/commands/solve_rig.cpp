@@ -137,8 +137,8 @@ void solve_rig_command(const RequestOptions& typed, const RigOptionsTyped& rig, 
   refuse_options_of_two(typed);
   if (!typed.source.log.empty()) refuse_reading_options(typed.reading, "--log");
   if (!output.format.empty() && !holds_tree(*extrinsic_format_from_name(output.format)))
-    throw UsageError("--format " + output.format +
-                     ": holds one extrinsic; a rig can be written as urdf, ros, ros-launch, yaml or json");
+    throw UsageError("--format " + output.format + ": holds one extrinsic; a rig can be written as " +
+                     tree_format_names());
   const SolveRequest common = common_request(typed);
   RigRequest request = rig_request(typed, rig);
   request.calibration = common.calibration;

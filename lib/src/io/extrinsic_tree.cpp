@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -14,6 +15,9 @@
 namespace egocal {
 
 namespace {
+
+constexpr std::array tree_formats{ExtrinsicFormat::urdf, ExtrinsicFormat::ros, ExtrinsicFormat::ros_launch,
+                                  ExtrinsicFormat::yaml, ExtrinsicFormat::json};
 
 /// Standard deviation of the translation [m]; infinite where it is not known.
 double uncertainty(const NamedExtrinsic& pair) {
@@ -128,8 +132,14 @@ ExtrinsicTree extrinsic_tree(const std::vector<NamedExtrinsic>& pairs, const std
 }
 
 bool holds_tree(ExtrinsicFormat format) {
-  using enum ExtrinsicFormat;
-  return format == urdf || format == ros || format == ros_launch || format == yaml || format == json;
+  return std::find(tree_formats.begin(), tree_formats.end(), format) != tree_formats.end();
+}
+
+std::string tree_format_names() {
+  std::string names(to_string(tree_formats.front()));
+  for (std::size_t i = 1; i < tree_formats.size(); ++i)
+    names.append(i + 1 < tree_formats.size() ? ", " : " or ").append(to_string(tree_formats[i]));
+  return names;
 }
 
 std::string extrinsic_tree_text(const ExtrinsicTree& tree, ExtrinsicFormat format) {
@@ -138,8 +148,8 @@ std::string extrinsic_tree_text(const ExtrinsicTree& tree, ExtrinsicFormat forma
   if (format == ExtrinsicFormat::ros_launch) return launch_text(tree);
   if (format == ExtrinsicFormat::json) return json_tree(tree);
   if (!holds_tree(format))
-    throw Error(std::string(to_string(format)) +
-                ": holds one extrinsic; a tree can be written as urdf, ros, ros-launch, yaml or json");
+    throw Error(std::string(to_string(format)) + ": holds one extrinsic; a tree can be written as " +
+                tree_format_names());
   std::string text;
   for (const NamedExtrinsic& edge : tree.edges)
     text += (format == ExtrinsicFormat::yaml && !text.empty() ? "---\n" : "") + extrinsic_text(edge, format);

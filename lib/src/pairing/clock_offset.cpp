@@ -18,11 +18,6 @@ namespace {
 constexpr std::size_t released_at_once = 8;
 constexpr std::size_t without_limit = std::numeric_limits<std::size_t>::max();
 
-bool good(const TimeOffset& offset, const ClockOptions& options) {
-  return offset.correlation >= options.least_correlation && offset.stddev <= options.largest_stddev &&
-         offset.inliers >= options.least_inliers;
-}
-
 using Window = std::deque<StampedPose>;
 
 /// The first pose of a stream's window after a time since its begin.
@@ -53,6 +48,15 @@ Trajectory part(const ClockState::Stream& stream, std::int64_t begin, std::int64
 }
 
 }  // namespace
+
+bool is_trusted(const TimeOffset& offset, const ClockOptions& options) {
+  return offset.correlation >= options.least_correlation && offset.stddev <= options.largest_stddev &&
+         offset.inliers >= options.least_inliers;
+}
+
+bool is_another_clock(double change, double stddev, const ClockOptions& options) {
+  return change >= options.least_change && change >= options.change_sigmas * stddev;
+}
 
 ClockFollower::ClockFollower(const PairingOptions& options) : ClockFollower(options, ClockState{}) {}
 
@@ -210,7 +214,7 @@ void ClockFollower::conclude(std::int64_t worked_us, std::vector<ReleasedPose>& 
   const std::optional<TimeOffset> offset = search_->finish();
   search_.reset();
   if (offset) state_.newest = offset;
-  const bool trusted = offset && good(*offset, options_);
+  const bool trusted = offset && is_trusted(*offset, options_);
   const bool first = trusted && !state_.in_force;
   state_.near = trusted;
   if (first) {
@@ -224,7 +228,7 @@ void ClockFollower::conclude(std::int64_t worked_us, std::vector<ReleasedPose>& 
         std::abs(to_seconds(on_clock_of_a(*offset, end_us) - on_clock_of_a(*state_.in_force, end_us)));
     const double stddev =
         offset->drifts ? std::hypot(offset->stddev, since * offset->rate_stddev) : offset->stddev;
-    if (change >= options_.least_change && change >= options_.change_sigmas * stddev) {
+    if (is_another_clock(change, stddev, options_)) {
       state_.in_force = offset;
       ++state_.changes;
     }

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "egocal/error.hpp"
-#include "egocal/pairing/options.hpp"
+#include "egocal/pairing/clock_offset.hpp"
 #include "egocal/pairing/time_offset.hpp"
 #include "egocal/scale/scale_statistics.hpp"
 
@@ -20,22 +20,15 @@ namespace {
 
 using Estimates = std::vector<std::optional<TimeOffset>>;
 
-/// Whether the estimate of a drive alone may tell it from others, as one of a live clock is trusted.
-bool is_trusted(const std::optional<TimeOffset>& offset) {
-  const ClockOptions least;
-  return offset && offset->correlation >= least.least_correlation && offset->stddev <= least.largest_stddev &&
-         offset->inliers >= least.least_inliers;
+bool differ(const TimeOffset& x, const TimeOffset& y, const ClockOptions& options) {
+  return is_another_clock(std::abs(x.seconds - y.seconds), std::hypot(x.stddev, y.stddev), options);
 }
 
-bool differ(const TimeOffset& x, const TimeOffset& y, const ClocksOfDrivesOptions& options) {
-  const double change = std::abs(x.seconds - y.seconds);
-  return change > options.least_change && change > options.change_sigmas * std::hypot(x.stddev, y.stddev);
-}
-
-bool any_differ(const Estimates& estimates, const ClocksOfDrivesOptions& options) {
+bool any_differ(const Estimates& estimates, const ClockOptions& options) {
+  const auto trusted = [&](const std::optional<TimeOffset>& one) { return one && is_trusted(*one, options); };
   for (const std::optional<TimeOffset>& x : estimates)
     for (const std::optional<TimeOffset>& y : estimates)
-      if (is_trusted(x) && is_trusted(y) && differ(*x, *y, options)) return true;
+      if (trusted(x) && trusted(y) && differ(*x, *y, options)) return true;
   return false;
 }
 
@@ -48,8 +41,7 @@ bool in_order(const Trajectory& trajectory) {
 
 std::vector<ClockOfDrive> put_drives_on_clock_of_a(const Drives& drives, std::size_t sensor_a,
                                                    std::size_t sensor_b, const Trajectory& a, Trajectory& b,
-                                                   const CalibrationOptions& options,
-                                                   const ClocksOfDrivesOptions& clocks) {
+                                                   const CalibrationOptions& options) {
   if (drives.size() < 2) return {};
   const auto lengths = [&](Trajectory part, Side side) {
     return !options.estimate_scale && options.scale_side == side ? scaled(std::move(part), options.scale)
@@ -63,7 +55,7 @@ std::vector<ClockOfDrive> put_drives_on_clock_of_a(const Drives& drives, std::si
                              {.max_gap = options.pairing.max_gap}));
     if (estimates.back() && estimates.back()->rival) return {};
   }
-  if (!any_differ(estimates, clocks)) return {};
+  if (!any_differ(estimates, options.pairing.clock)) return {};
   std::vector<ClockOfDrive> result;
   Trajectory corrected;
   for (std::size_t k = 0; k < drives.size(); ++k) {

@@ -19,22 +19,15 @@ struct ClockOfDrive {
   TimeOffset estimate;  ///< from this drive alone, corrected
 };
 
-struct ClocksOfDrivesOptions {
-  /// Drives have clocks of their own where the offsets of two differ by both [s, standard deviations of both
-  /// together]: as a live clock is followed (ClockOptions::least_change, change_sigmas).
-  double least_change = 5e-3, change_sigmas = 4;
-};
-
-/// Estimates the time offset of each drive from that drive alone. Where they differ, the part of each drive
-/// in b is put on the clock of a, and the clocks are handed back, one for each drive; otherwise, and where
-/// the motion of a drive repeats so that another offset fits it as well, b is unchanged and the list is
-/// empty: one estimate serves all of them. Throws Error where the clocks of two drives differ and that of
-/// another cannot be estimated. a, b: the streams of the sensors as they were read; options: how they are
-/// read and paired.
+/// Estimates the time offset of each drive from that drive alone. Where they differ, by the options by which
+/// a live clock is followed (PairingOptions::clock), the part of each drive in b is put on the clock of a,
+/// and the clocks are handed back, one for each drive; otherwise, and where the motion of a drive repeats so
+/// that another offset fits it as well, b is unchanged and the list is empty: one estimate serves all of
+/// them. Throws Error where the clocks of two drives differ and that of another cannot be estimated. a, b:
+/// the streams of the sensors as they were read; options: how they are read and paired.
 std::vector<ClockOfDrive> put_drives_on_clock_of_a(const Drives& drives, std::size_t sensor_a,
                                                    std::size_t sensor_b, const Trajectory& a, Trajectory& b,
-                                                   const CalibrationOptions& options,
-                                                   const ClocksOfDrivesOptions& clocks = {});
+                                                   const CalibrationOptions& options);
 
 /// "-0.3003 s (a.tum), 0.0001 s (b.tum) added to its stamps".
 std::string clocks_in_words(const std::vector<ClockOfDrive>& clocks);

@@ -23,8 +23,11 @@ struct ExtrinsicTree {
 /// not connect every sensor, naming one that cannot be reached.
 ExtrinsicTree extrinsic_tree(const std::vector<NamedExtrinsic>& pairs, const std::string& root = "");
 
-/// Whether a file of this format holds several extrinsics: urdf, ros, ros_launch, yaml and json do.
+/// Whether a file of this format holds several extrinsics.
 bool holds_tree(ExtrinsicFormat format);
+
+/// The names of those formats: "urdf, ros, ros-launch, yaml or json".
+std::string tree_format_names();
 
 /// The whole text of a file: urdf (a robot), ros, ros_launch, yaml (one document an edge), json (`root` and
 /// `edges`). Throws Error for the formats that hold one extrinsic only.

@@ -14,6 +14,13 @@
 
 namespace egocal {
 
+/// Whether an estimate may come into force: options.least_correlation, least_inliers and largest_stddev.
+bool is_trusted(const TimeOffset& offset, const ClockOptions& options);
+
+/// Whether two offsets are those of two clocks: a change [s] of which the standard deviation is known [s], by
+/// options.least_change and change_sigmas.
+bool is_another_clock(double change, double stddev, const ClockOptions& options);
+
 /// What following the offset between two clocks remembers: the newest minutes of both streams. Bounded;
 /// continuing from a copy gives the same bits.
 struct ClockState {
