@@ -64,6 +64,11 @@ std::vector<ClockOfDrive> put_drives_on_clock_of_a(const Drives& drives, std::si
           fmt::format("{}: the time offset of this drive cannot be estimated, it is too short or never "
                       "turns, and the clocks of the other drives differ: leave it out",
                       drives.name(k)));
+    if (!is_trusted(*estimates[k], options.pairing.clock))
+      throw Error(fmt::format(
+          "{}: the time offset of this drive is not certain ({:.3f} s with a standard deviation of {:.3f} s "
+          "and a correlation of {:.2f}), and the clocks of the other drives differ: leave it out",
+          drives.name(k), estimates[k]->seconds, estimates[k]->stddev, estimates[k]->correlation));
     const Trajectory part = on_clock_of_a(*estimates[k], drives.part(b, k, sensor_b));
     corrected.insert(corrected.end(), part.begin(), part.end());
     result.push_back({drives.name(k), *estimates[k]});

@@ -23,8 +23,8 @@ struct ClockOfDrive {
 /// a live clock is followed (PairingOptions::clock), the part of each drive in b is put on the clock of a,
 /// and the clocks are handed back, one for each drive; otherwise, and where the motion of a drive repeats so
 /// that another offset fits it as well, b is unchanged and the list is empty: one estimate serves all of
-/// them. Throws Error where the clocks of two drives differ and that of another cannot be estimated. a, b:
-/// the streams of the sensors as they were read; options: how they are read and paired.
+/// them. Throws Error where the clocks of two drives differ and that of another cannot be estimated or is not
+/// certain. a, b: the streams of the sensors as they were read; options: how they are read and paired.
 std::vector<ClockOfDrive> put_drives_on_clock_of_a(const Drives& drives, std::size_t sensor_a,
                                                    std::size_t sensor_b, const Trajectory& a, Trajectory& b,
                                                    const CalibrationOptions& options);
