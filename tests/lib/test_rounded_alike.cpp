@@ -69,6 +69,33 @@ TEST(RoundedAlike, DigitsOfMatricesAreFound) {
   EXPECT_FALSE(detail::digits_of_matrices(a).known());
 }
 
+/// On a nearly straight drive the scalar part is 1.000 in each row, and the others have one digit: 0.004.
+TEST(RoundedAlike, OneIsNoNumberOfOneDigit) {
+  Trajectory straight;
+  for (int i = 0; i < 200; ++i) {
+    const double t = 0.1 * i;
+    const Eigen::Vector3d turn{0.008 * std::sin(t), 0.006 * std::cos(0.7 * t), 0.015 * std::sin(0.3 * t)};
+    straight.push_back({i * 100'000, to_dual_quaternion(Pose{rotation_exp(turn), {t, 0.1 * t, 0}})});
+  }
+  const detail::Digits by_decimals = detail::written(written_as(As::quaternions, straight, 3)).rotation;
+  EXPECT_EQ(by_decimals.decimals, 3);
+  EXPECT_EQ(by_decimals.significant, 0);
+  EXPECT_NEAR(by_decimals.step(1), 1e-3, 1e-15);
+
+  const auto two_digits = [](double x) {
+    if (x == 0) return x;
+    const double step = std::pow(10, std::floor(std::log10(std::abs(x))) - 1);
+    return step * std::round(x / step);
+  };
+  for (StampedPose& stamped : straight) {
+    Pose pose = to_pose(stamped.pose);
+    pose.rotation.coeffs() = pose.rotation.coeffs().unaryExpr(two_digits).eval();
+    pose.rotation.normalize();
+    stamped.pose = canonical_sign(to_dual_quaternion(pose));
+  }
+  EXPECT_EQ(detail::written(straight).rotation.significant, 2);
+}
+
 /// By the differences between the streams alone some of these drives lose more than half of their poses.
 TEST(RoundedAlike, MostPosesAreKept) {
   double most_without = 0;

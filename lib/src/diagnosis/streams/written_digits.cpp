@@ -38,6 +38,9 @@ struct Coordinates {
       return !(step > 0) || is_multiple(x, step, size);
     });
   }
+  double largest_telling(std::size_t i, const Digits&) const {
+    return position_of(trajectory[i].pose).cwiseAbs().maxCoeff();
+  }
 };
 
 /// Quaternions. Those of a file were not quite of unit length; they are up to a factor near one, by which the
@@ -58,6 +61,13 @@ struct Components {
         return true;
     }
     return false;
+  }
+  /// One has a single digit however many were written: so has the scalar part of all small rotations.
+  double largest_telling(std::size_t i, const Digits& digits) const {
+    double largest = 0;
+    for (const double x : trajectory[i].pose.real.cwiseAbs())
+      if (x < 1 - 0.5 * std::pow(10, -digits.decimals)) largest = std::max(largest, x);
+    return largest;
   }
 };
 
@@ -86,16 +96,36 @@ struct Elements {
   }
 };
 
+std::size_t distance_of_looks(std::size_t poses, const WrittenDigitsOptions& options) {
+  return std::max<std::size_t>(1, poses / options.looked_at);
+}
+
+std::size_t most_others(std::size_t poses, const WrittenDigitsOptions& options) {
+  return static_cast<std::size_t>(options.most_others *
+                                  static_cast<double>(std::min(poses, options.looked_at)));
+}
+
 template <typename Numbers>
 bool all_have(const Digits& digits, const Numbers& numbers, const WrittenDigitsOptions& options) {
-  const std::size_t n = numbers.trajectory.size();
-  const std::size_t each = std::max<std::size_t>(1, n / options.looked_at);
+  const std::size_t n = numbers.trajectory.size(), each = distance_of_looks(n, options);
   std::size_t looked = 0, others = 0;
-  const auto most_others =
-      static_cast<std::size_t>(options.most_others * static_cast<double>(std::min(n, options.looked_at)));
   for (std::size_t i = 0; i < n; i += each, ++looked)
-    if (!numbers.written_with(i, digits) && ++others > most_others) return false;
+    if (!numbers.written_with(i, digits) && ++others > most_others(n, options)) return false;
   return looked >= options.fewest;
+}
+
+/// Whether numbers that have so many significant digits could have had more by their decimals. 0.004 has one
+/// digit by three decimals, too.
+template <typename Numbers>
+bool tell_more_than_decimals(const Digits& digits, const Numbers& numbers,
+                             const WrittenDigitsOptions& options) {
+  if (digits.decimals == 0) return true;
+  const double more_digits = std::pow(10, digits.significant - digits.decimals);
+  const std::size_t n = numbers.trajectory.size(), each = distance_of_looks(n, options);
+  std::size_t telling = 0;
+  for (std::size_t i = 0; i < n; i += each)
+    if (numbers.largest_telling(i, digits) > more_digits * (1 - 1e-6)) ++telling;
+  return telling > 2 * most_others(n, options);  // of the others, which have more digits, and of these
 }
 
 template <typename Numbers>
@@ -110,6 +140,7 @@ Digits digits_of(const Numbers& numbers, const WrittenDigitsOptions& options) {
   Digits result{decimals_of(numbers, options), 0};
   for (int count = 1; count <= options.most_digits && result.significant == 0; ++count)
     if (all_have({0, count}, numbers, options)) result.significant = count;
+  if (!tell_more_than_decimals(result, numbers, options)) result.significant = 0;
   return result;
 }
 
