@@ -54,7 +54,7 @@ struct Sense {
 
 Sense sense_of(const Motions& motions, const PlaneTurning& turning, const GroundPlane& a,
                const GroundPlane& b, double aligned) {
-  const auto along = [aligned](const TurningAxis& turns, const GroundPlane& plane) {
+  const auto along = [aligned](const AxisBesideNormal& turns, const GroundPlane& plane) {
     return std::abs(turns.axis.dot(plane.normal)) > aligned;
   };
   double common = 0;  // sum of the products of the turns about both normals
@@ -83,7 +83,7 @@ std::vector<Finding> opposite_planes() {
   return findings;
 }
 
-std::string normal_to_check(char which, const TurningAxis& turns) {
+std::string normal_to_check(char which, const AxisBesideNormal& turns) {
   return format("Check the normal of {solve}--plane-%c: the turns say (%.4f, %.4f, %.4f)", which,
                 turns.axis.x(), turns.axis.y(), turns.axis.z());
 }

@@ -61,9 +61,9 @@ Eigen::Vector3d main_axis(const Eigen::Matrix3d& squares, const Eigen::Vector3d&
   return axis.dot(towards) < 0 ? Eigen::Vector3d(-axis) : axis;
 }
 
-TurningAxis axis_of(const std::vector<TurnSums>& parts, Eigen::Matrix3d TurnSums::*squares,
-                    const Eigen::Vector3d& normal) {
-  TurningAxis result;
+AxisBesideNormal axis_of(const std::vector<TurnSums>& parts, Eigen::Matrix3d TurnSums::*squares,
+                         const Eigen::Vector3d& normal) {
+  AxisBesideNormal result;
   result.axis = main_axis(sum_without(parts, parts.size()).*squares, normal, &result.ratio);
   result.off = angle_between(result.axis, normal);
   double sum = 0;

@@ -11,7 +11,7 @@
 namespace egocal::detail {
 
 /// Axis that one sensor turns about, in its own frame.
-struct TurningAxis {
+struct AxisBesideNormal {
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< of length 1, on the side of the plane's normal
   double off = 0;                                  ///< from the normal [rad], at most a right angle
   double stddev = 0;                               ///< of `off` [rad], by leaving out parts of the drive
@@ -28,7 +28,7 @@ struct NormalsApart {
 };
 
 struct PlaneTurning {
-  TurningAxis a, b;
+  AxisBesideNormal a, b;
   NormalsApart apart;
 };
 
