@@ -40,6 +40,36 @@ Trajectory slipping(const Trajectory& right, double most) {
   return wrong;
 }
 
+/// The vertical of the vehicle, in the frame of b.
+Eigen::Vector3d T_vehicle_b_up() {
+  return testing::T_vehicle_b.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+}
+
+/// The steps of b are too long in turns to one side, and too short in those to the other: by this part at
+/// the fastest turns, or by the side alone.
+Trajectory with_lengths_of_a_side(const Trajectory& right, double part, bool side_alone) {
+  const Eigen::Vector3d up = T_vehicle_b_up();
+  std::vector<Pose> steps;
+  std::vector<double> angles, sorted;
+  for (std::size_t i = 1; i < right.size(); ++i) {
+    steps.push_back(inverse(to_pose(right[i - 1].pose)) * to_pose(right[i].pose));
+    angles.push_back(up.dot(rotation_log(steps.back().rotation)));
+    sorted.push_back(std::abs(angles.back()));
+  }
+  std::sort(sorted.begin(), sorted.end());
+  const double fastest = side_alone ? 0 : sorted[sorted.size() * 95 / 100];
+  Trajectory wrong = right;
+  Pose at = to_pose(right.front().pose);
+  for (std::size_t i = 1; i < right.size(); ++i) {
+    Pose step = steps[i - 1];
+    const double turning = angles[i - 1] / std::max(fastest, std::abs(angles[i - 1]));
+    step.translation *= 1 + part * turning;
+    at = at * step;
+    wrong[i].pose = to_dual_quaternion(at);
+  }
+  return wrong;
+}
+
 /// After the cure of the scale that fits best the motions agree, with a wrong answer.
 TEST(LengthsInTurns, AreNamedAtTheBestScale) {
   SimulationOptions options;
@@ -60,6 +90,28 @@ TEST(LengthsInTurns, AreNamedAtTheBestScale) {
     ASSERT_NE(found, nullptr) << seed << " " << calibration.reason;
     EXPECT_NE(found->message.find("too short while it turns"), std::string::npos) << found->message;
   }
+}
+
+/// At a constant speed they are a lever arm; where it changes they are none.
+TEST(LengthsInTurns, ToASideAreNamedWhereTheSpeedChanges) {
+  SimulationOptions options;
+  options.poses = 1201;
+  options.relative_noise = 0.005;
+  options.speed_variation = 0.4;
+  for (const bool side_alone : {false, true})
+    for (const std::uint64_t seed : {1, 3}) {
+      options.seed = seed;
+      testing::Streams wrong = testing::simulated_drive(options);
+      wrong.b = with_lengths_of_a_side(wrong.b, 0.05, side_alone);
+      const Calibration calibration = calibrate(wrong.a, wrong.b);
+      EXPECT_GE(calibration.verdict, Verdict::doubtful) << seed << " " << calibration.reason;
+      const Finding* const found = find(calibration, "scale_change");
+      ASSERT_NE(found, nullptr) << side_alone << " " << seed << " " << calibration.reason;
+      EXPECT_NE(found->message.find("in turns to one side"), std::string::npos) << found->message;
+      ASSERT_TRUE(found->T_a_b);
+      const ExtrinsicError error = extrinsic_error(wrong.T, to_dual_quaternion(*found->T_a_b));
+      EXPECT_LT(error.translation, 0.4) << side_alone << " " << seed << " " << found->message;
+    }
 }
 
 TEST(LengthsInTurns, OfRightStreamsAreNotNamed) {

@@ -25,6 +25,7 @@
 #include "diagnosis/explanations/times/late_positions.hpp"
 #include "diagnosis/explanations/times/late_rotations.hpp"
 #include "diagnosis/explanations/times/late_turning.hpp"
+#include "diagnosis/explanations/times/moved_answer.hpp"
 #include "diagnosis/explanations/times/smoothed_rotations.hpp"
 #include "diagnosis/motions/answer_change.hpp"
 #include "diagnosis/motions/fit.hpp"
@@ -152,8 +153,9 @@ void add_what_is_beside(const Foreseen& foreseen, const DiagnosisOptions& option
   replace_by_changing_scale(evidence, pairing, answered, options, result.findings);
   name_same_stream(evidence, answered, options, result);
   add_impossible_pace(evidence, options, result.findings);
-  name_lengths_in_turns(evidence, answered, options, result.findings);
+  const Vector6d by_lengths = name_lengths_in_turns(evidence, answered, options, result.findings);
   look_at_times(foreseen, answered, result);
+  if (!by_lengths.isZero(0)) widen_by(by_lengths, answered, result);
   name_small_scale(evidence, options, answered, result);
   if (pairing.mode != Mode::planar) {
     name_late_rotations(evidence, pairing.max_gap, options, wrong_stream, result.findings);
