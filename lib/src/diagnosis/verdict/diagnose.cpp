@@ -27,6 +27,7 @@
 #include "diagnosis/explanations/times/late_turning.hpp"
 #include "diagnosis/explanations/times/moved_answer.hpp"
 #include "diagnosis/explanations/times/smoothed_rotations.hpp"
+#include "diagnosis/explanations/turning/wandering_headings.hpp"
 #include "diagnosis/motions/answer_change.hpp"
 #include "diagnosis/motions/fit.hpp"
 #include "diagnosis/motions/standing_still.hpp"
@@ -164,6 +165,7 @@ void add_what_is_beside(const Foreseen& foreseen, const DiagnosisOptions& option
     name_late_turning(evidence, options, answered, result);
     // standard deviations that it widens would hide that a part is towed
     name_smoothed_rotations(evidence, pairing.max_gap, options, answered, result);
+    name_wandering_headings(evidence, options, answered, result);
   }
   name_askew_rotations(evidence, answered, options, result.findings);
   add_interpolated_streams(foreseen, options, answered, result);
