@@ -83,7 +83,7 @@ class Packed : public ::testing::Test {
     return "none";
   }
   testing::ScratchFolder folder_;
-  std::string plain_ = tum();
+  std::string plain_ = tum(), packed_gz_ = packed("gz", plain_);
 };
 
 TEST_F(Packed, AWrongChecksumIsNamedAsOneAndNotAsAnEndThatIsCutOff) {
@@ -124,6 +124,39 @@ TEST_F(Packed, DamageInTheMiddleIsARegionThatIsCounted) {
     EXPECT_GE(reading.losses.regions, 1u) << kind;
     EXPECT_GT(reading.losses.bytes, 0u) << kind;
     EXPECT_FALSE(reading.losses.checksum) << kind;
+  }
+}
+
+// A row that rubbish had been unpacked to was to blame, and a user looked into what had written it.
+TEST_F(Packed, RubbishThatIsUnpackedIsBlamedOnTheDamageAndNotOnItsLine) {
+  std::size_t refused = 0;
+  for (std::size_t i = 2000; i < packed_gz_.size(); i += 4001) {
+    std::string file = packed_gz_;
+    file[i] ^= 0x10;
+    const std::string why = refusal(file);
+    if (why == "none") continue;
+    ++refused;
+    EXPECT_THAT(why, HasSubstr("file: what is packed by gzip is damaged: copy the file again (as unpacked, "))
+        << i;
+  }
+  EXPECT_GT(refused, 3u);
+}
+
+TEST_F(Packed, AWrongRowOfAFileThatIsNotDamagedIsNamedByItsLine) {
+  const std::size_t third = plain_.find('\n', plain_.find('\n') + 1) + 1;
+  const std::string wrong =
+      plain_.substr(0, third) + "1700000002.5 0 0 zero 0 0 0 1\n" + plain_.substr(third);
+  for (const std::string kind : {"gz", "zst", "bz2", "lz4"})
+    EXPECT_THAT(refusal(packed(kind, wrong)), HasSubstr("file:3: field 4 (tz): expected a number")) << kind;
+  const std::string images =
+      "# Image list with two lines of data per image:\n1 1 0 0 0 1 2 3 1 image.png\n\n";
+  for (const std::string kind : {"gz", "lz4"}) {
+    std::string file = packed(kind, images);
+    EXPECT_THAT(refusal(file), HasSubstr("file:2: NAME: expected a time")) << kind;
+    file[file.size() - (kind == "gz" ? 8 : 1)] ^= 0x55;
+    EXPECT_THAT(refusal(file),
+                AllOf(HasSubstr("is damaged: copy the file again (as unpacked, line 2: NAME: ")))
+        << kind;
   }
 }
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -134,8 +135,38 @@ void ByteSource::count_unpacking(ReadLosses& losses) {
 
 std::string ByteSource::why_empty() const {
   if (!packing_ || failure_ == Failure::none) return "holds no data";
-  return "holds no data: what is packed by " + std::string(packing_->name) + " is " +
-         (failure_ == Failure::cut_off ? "cut off" : "damaged") + " before the first row";
+  return "holds no data: what is packed by " + std::string(packing_->name) + " is " + what_failed() +
+         " before the first row";
+}
+
+void ByteSource::read_content(const std::function<void()>& content) {
+  try {
+    content();
+  } catch (const Error& error) {
+    std::string fault = error.what();
+    if (!packing_ || fault.ends_with(why_empty()) || !fails_to_unpack()) throw;
+    if (fault.starts_with(file_ + ":")) fault.erase(0, file_.size() + 1);
+    fault.erase(0, fault.find_first_not_of(' '));
+    const bool of_line = !fault.empty() && std::isdigit(static_cast<unsigned char>(fault.front())) != 0;
+    throw error_at(file_, 0, "",
+                   "what is packed by " + std::string(packing_->name) + " is " + what_failed() +
+                       ": copy the file again (as unpacked, " + (of_line ? "line " : "") + fault + ")");
+  }
+}
+
+/// Whether unpacking fails anywhere up to the end of the file, to which this reads.
+bool ByteSource::fails_to_unpack() {
+  try {
+    while (unpacker_ && skip(window_size) > 0) {
+    }
+  } catch (const Error&) {
+    return false;  // reading failed
+  }
+  return failure_ != Failure::none;
+}
+
+const char* ByteSource::what_failed() const {
+  return failure_ == Failure::cut_off ? "cut off" : "damaged";
 }
 
 /// Bytes left of the packed file, from where unpacking has ended; of a pipe those that have been read.

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -44,6 +45,9 @@ class ByteSource {
   void count_unpacking(ReadLosses& losses);
   /// "holds no data", and why where unpacking has failed: for a file in which nothing was found.
   std::string why_empty() const;
+  /// Reads `content`. Where that throws and what is packed is damaged, rubbish may have been unpacked: the
+  /// Error then names the damage first.
+  void read_content(const std::function<void()>& content);
 
   /// Goes back to the first byte. Throws Error where the file is a pipe that has been read from.
   void rewind();
@@ -53,6 +57,8 @@ class ByteSource {
   std::size_t read_raw(unsigned char* to, std::size_t size);
   std::size_t read_unpacked(unsigned char* to, std::size_t size);
   std::uint64_t packed_left() const;
+  bool fails_to_unpack();
+  const char* what_failed() const;
 
   std::string file_;
   Descriptor descriptor_;

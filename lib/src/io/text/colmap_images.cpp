@@ -20,6 +20,7 @@ namespace {
 
 struct Image {
   std::string number;  ///< the last one in the name
+  double value = 0;    ///< of it
   long line = 0;
   DualQuaternion T_world_camera;
 };
@@ -58,6 +59,41 @@ std::optional<TimeUnit> unit_of(double largest) {
   return largest < 4.1e15 ? TimeUnit::microseconds : TimeUnit::nanoseconds;
 }
 
+std::vector<Image> read_images(ByteSource& source, ReadLosses& losses) {
+  std::vector<Image> images;
+  LineReader lines(source);
+  std::string_view line;
+  std::vector<std::string_view> row;
+  while (lines.next(line)) {
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first == std::string_view::npos || line[first] == '#') continue;
+    split(line, ' ', row);
+    if (row.size() < 10) {
+      if (!lines.terminated() && !images.empty()) {
+        losses.truncated = true;
+        break;
+      }
+      throw error_at(source.file(), lines.number(), "",
+                     "expected 10 fields (IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME), got " +
+                         std::to_string(row.size()));
+    }
+    constexpr std::array<const char*, 7> names{"QW", "QX", "QY", "QZ", "TX", "TY", "TZ"};
+    std::array<double, 7> v{};
+    for (std::size_t i = 0; i < v.size(); ++i)
+      v[i] = number(source.file(), lines.number(), names[i], row[i + 1]);
+    const CheckedPose T_camera_world = checked_pose({v[4], v[5], v[6]}, {v[0], v[1], v[2], v[3]});
+    if (!T_camera_world.reason.empty())
+      throw error_at(source.file(), lines.number(), "", T_camera_world.reason);
+    Image image{number_in_name(row[9]), 0, lines.number(), conjugate(T_camera_world.pose)};
+    if (image.number.empty() || !parse_number(image.number, image.value))
+      throw error_at(source.file(), lines.number(), "NAME",
+                     "expected a time or the number of a frame in the image's name, got " + quoted(row[9]));
+    images.push_back(std::move(image));
+    lines.next(line);  // the points seen in it; the line is empty where there are none
+  }
+  return images;
+}
+
 }  // namespace
 
 ColmapImages::ColmapImages(std::unique_ptr<ByteSource> source, const ReadOptions& options)
@@ -94,40 +130,12 @@ void ColmapImages::read(const std::string& topic, const TakePose& take) {
       "--scale-b auto where it is B"};
 
   std::vector<Image> images;
-  double largest = 0;
-  LineReader lines(*source_);
-  std::string_view line;
-  std::vector<std::string_view> row;
-  while (lines.next(line)) {
-    const std::size_t first = line.find_first_not_of(" \t\r");
-    if (first == std::string_view::npos || line[first] == '#') continue;
-    split(line, ' ', row);
-    if (row.size() < 10) {
-      if (!lines.terminated() && !images.empty()) {
-        losses_.truncated = true;
-        break;
-      }
-      throw error_at(file_, lines.number(), "",
-                     "expected 10 fields (IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME), got " +
-                         std::to_string(row.size()));
-    }
-    constexpr std::array<const char*, 7> names{"QW", "QX", "QY", "QZ", "TX", "TY", "TZ"};
-    std::array<double, 7> v{};
-    for (std::size_t i = 0; i < v.size(); ++i) v[i] = number(file_, lines.number(), names[i], row[i + 1]);
-    const CheckedPose T_camera_world = checked_pose({v[4], v[5], v[6]}, {v[0], v[1], v[2], v[3]});
-    if (!T_camera_world.reason.empty()) throw error_at(file_, lines.number(), "", T_camera_world.reason);
-    Image image{number_in_name(row[9]), lines.number(), conjugate(T_camera_world.pose)};
-    double value = 0;
-    if (image.number.empty() || !parse_number(image.number, value))
-      throw error_at(file_, lines.number(), "NAME",
-                     "expected a time or the number of a frame in the image's name, got " + quoted(row[9]));
-    largest = std::max(largest, value);
-    images.push_back(std::move(image));
-    lines.next(line);  // the points seen in it; the line is empty where there are none
-  }
+  source_->read_content([&] { images = read_images(*source_, losses_); });
   source_->count_unpacking(losses_);
   if (images.empty()) throw error_at(file_, 0, "", source_->why_empty());
 
+  double largest = 0;
+  for (const Image& image : images) largest = std::max(largest, image.value);
   const std::optional<TimeUnit> unit = unit_of(largest);
   times_in_names_ = unit.has_value();
   if (!unit)

@@ -27,6 +27,10 @@ constexpr double metres_a_degree = 111e3;  // of latitude, roughly: directions n
 
 TextRecording::TextRecording(std::unique_ptr<ByteSource> source, ReadOptions options)
     : Recording(source->file()), source_(std::move(source)), options_(std::move(options)) {
+  source_->read_content([this] { find_layout(); });
+}
+
+void TextRecording::find_layout() {
   layout_ = detect_layout(*source_, options_);
   if (!options_.times_file.empty()) {
     if (layout_.times)
@@ -149,19 +153,7 @@ void TextRecording::read(const std::string& topic, const TakePose& take) {
   if (!layout_.matrix && !layout_.columns.has_pose())
     notes_.push_back("poses are integrated from the velocities in the frame of the sensor");
   TextRows rows(*source_, layout_);
-  while (rows.next()) {
-    std::optional<StampedPose> pose;
-    try {
-      pose = pose_of_row(rows);
-    } catch (const Error&) {
-      if (!may_end_in_a_cut_number(rows)) throw;
-      losses_.truncated = true;
-    }
-    if (pose) {
-      ++streams_[0].messages;
-      take(0, *pose);
-    }
-  }
+  source_->read_content([&] { read_rows(rows, take); });
   source_->count_unpacking(losses_);
   if (rows.count == 0) throw error_at(file_, 0, "", source_->why_empty());
   if (!times_.empty() && times_.size() != rows.count)
@@ -175,6 +167,22 @@ void TextRecording::read(const std::string& topic, const TakePose& take) {
                      (options_.rate > 0 ? "as given"
                       : layout_.named   ? "assumed (--rate)"
                                         : "assumed (--rate, or --times FILE)"));
+  }
+}
+
+void TextRecording::read_rows(TextRows& rows, const TakePose& take) {
+  while (rows.next()) {
+    std::optional<StampedPose> pose;
+    try {
+      pose = pose_of_row(rows);
+    } catch (const Error&) {
+      if (!may_end_in_a_cut_number(rows)) throw;
+      losses_.truncated = true;
+    }
+    if (pose) {
+      ++streams_[0].messages;
+      take(0, *pose);
+    }
   }
 }
 

@@ -31,7 +31,9 @@ class TextRecording : public Recording {
   std::vector<std::string> unused(const ReadOptions& options) const override;
 
  private:
+  void find_layout();
   void find_angle_unit();
+  void read_rows(TextRows& rows, const TakePose& take);
   AngleUnit unit_by_rows(const std::vector<Quantity>& angles);
   double seconds_of_row(const TextRows& rows) const;
   Error unit_of_angles_needed(const std::vector<Quantity>& angles) const;

@@ -27,8 +27,10 @@ std::string in_other_unit(double size) {
 
 }  // namespace
 
-std::vector<std::int64_t> read_times_file(const std::string& file) {
-  ByteSource source(file);
+namespace {
+
+std::vector<std::int64_t> read_times(ByteSource& source) {
+  const std::string& file = source.file();
   LineReader lines(source);
   std::string_view line;
   std::vector<std::string_view> fields;
@@ -56,6 +58,15 @@ std::vector<std::int64_t> read_times_file(const std::string& file) {
         time_us(file, lines.number(), text, epoch_ns ? TimeUnit::nanoseconds : TimeUnit::seconds));
   }
   if (times.empty()) throw error_at(file, 0, "", source.why_empty());
+  return times;
+}
+
+}  // namespace
+
+std::vector<std::int64_t> read_times_file(const std::string& file) {
+  ByteSource source(file);
+  std::vector<std::int64_t> times;
+  source.read_content([&] { times = read_times(source); });
   return times;
 }
 
