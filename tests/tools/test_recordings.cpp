@@ -4,6 +4,7 @@
 // From any recording in to any format out, by the real program.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -306,6 +307,22 @@ TEST_F(Recordings, InfoMeasuresRowsThatWereWrittenLatestFirst) {
   for (const char* key : {"poses", "first_s", "last_s", "span_s", "gaps", "jumps"})
     EXPECT_EQ(descending[key], right[key]) << key;
   EXPECT_EQ(descending["times_not_increasing"], 399);
+}
+
+// It waited without a word for whatever was to write the pipe.
+TEST_F(Recordings, WhatIsWaitedForIsSaidAfterASecond) {
+  const std::string pipe = folder.path("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const std::string command =
+      "timeout -k 9 3 " + paths::bin_dir() + "/egocal info " + pipe + " 2>" + folder.path("err");
+  EXPECT_NE(std::system(command.c_str()), 0);
+  EXPECT_EQ(read("err"), "egocal: waiting for data from " + pipe + "\n");
+  // nothing where they come
+  const std::string writer = "cat " + folder.path("lidar.tum") + " > " + pipe + " & ";
+  ASSERT_EQ(std::system(writer.c_str()), 0);
+  const Outcome fed = egocal("solve --json " + pipe + " " + folder.path("camera.tum"));
+  EXPECT_EQ(fed.code, 0);
+  EXPECT_EQ(fed.err, "");
 }
 
 // Commands that take FILE:CHANNEL as those that take a log: it was the line of the library.

@@ -7,12 +7,14 @@
 #include "egocal/error.hpp"
 #include "offline/reading/lcm_recording.hpp"
 #include "offline/reading/log_trajectory.hpp"
+#include "offline/reading/pipe_notice.hpp"
 #include "offline/reading/poses_as_given.hpp"
 
 namespace egocal::tools {
 
 std::unique_ptr<Recording> open_any_recording(const std::string& file, const ReadOptions& options) {
   if (is_lcm_log(file)) return std::make_unique<LcmRecording>(file);
+  const PipeNotice notice(file);
   return open_recording(file, options);
 }
 
