@@ -40,13 +40,15 @@ void set_weights(const py::object& weights, PairingOptions& pairing, bool stride
   }
 }
 
-CalibrationOptions options_of(const std::string& method, const py::object& plane_a, const py::object& plane_b,
-                              std::optional<int> stride, const py::object& weights,
-                              const py::object& time_offset, double max_gap, const py::object& nominal) {
+CalibrationOptions options_of(const py::object& method, const py::object& plane_a, const py::object& plane_b,
+                              const py::object& stride, const py::object& weights,
+                              const py::object& time_offset, const py::object& max_gap,
+                              const py::object& nominal) {
   CalibrationOptions options;
-  const std::optional<Method> known = method_from_name(method);
+  const std::string name = to_text(method, "method", "global, fast, dual, sdp, sqp or slsqp");
+  const std::optional<Method> known = method_from_name(name);
   if (!known)
-    throw py::value_error("method: expected global, fast, dual, sdp, sqp or slsqp, got '" + method + "'");
+    throw py::value_error("method: expected global, fast, dual, sdp, sqp or slsqp, got '" + name + "'");
   options.method = *known;
   const std::optional<GroundPlane> a = to_plane(plane_a, "plane_a"), b = to_plane(plane_b, "plane_b");
   if (a.has_value() != b.has_value()) throw py::value_error("plane_a, plane_b: both or none");
@@ -55,8 +57,8 @@ CalibrationOptions options_of(const std::string& method, const py::object& plane
     options.pairing.plane_a = *a;
     options.pairing.plane_b = *b;
   }
-  options.pairing.stride = stride;
-  set_weights(weights, options.pairing, stride.has_value());
+  if (!stride.is_none()) options.pairing.stride = to_whole_number(stride, "stride", "a whole number or None");
+  set_weights(weights, options.pairing, !stride.is_none());
   if (py::isinstance<py::str>(time_offset)) {
     if (time_offset.cast<std::string>() != "auto")
       throw py::value_error("time_offset: expected seconds or 'auto'");
@@ -64,7 +66,7 @@ CalibrationOptions options_of(const std::string& method, const py::object& plane
   } else {
     options.pairing.time_offset = to_number(time_offset, "time_offset", "seconds or 'auto'");
   }
-  options.pairing.max_gap = max_gap;
+  options.pairing.max_gap = to_number(max_gap, "max_gap", "seconds");
   if (!nominal.is_none())
     options.pairing.prior = to_dual_quaternion(to_pose(to_matrix4(nominal, "nominal"), "nominal"));
   return options;
@@ -75,10 +77,10 @@ struct NotedCalibration : Calibration {
   std::vector<std::string> notes;
 };
 
-NotedCalibration solve_quietly(const py::object& a, const py::object& b, const std::string& method,
-                               const py::object& plane_a, const py::object& plane_b,
-                               std::optional<int> stride, const py::object& weights,
-                               const py::object& time_offset, double max_gap, const py::object& nominal) {
+NotedCalibration solve_quietly(const py::object& a, const py::object& b, const py::object& method,
+                               const py::object& plane_a, const py::object& plane_b, const py::object& stride,
+                               const py::object& weights, const py::object& time_offset,
+                               const py::object& max_gap, const py::object& nominal) {
   const CalibrationOptions options =
       options_of(method, plane_a, plane_b, stride, weights, time_offset, max_gap, nominal);
   NotedCalibration result;
@@ -89,10 +91,10 @@ NotedCalibration solve_quietly(const py::object& a, const py::object& b, const s
   return result;
 }
 
-NotedCalibration solve_trajectories(const py::object& a, const py::object& b, const std::string& method,
+NotedCalibration solve_trajectories(const py::object& a, const py::object& b, const py::object& method,
                                     const py::object& plane_a, const py::object& plane_b,
-                                    std::optional<int> stride, const py::object& weights,
-                                    const py::object& time_offset, double max_gap,
+                                    const py::object& stride, const py::object& weights,
+                                    const py::object& time_offset, const py::object& max_gap,
                                     const py::object& nominal) {
   NotedCalibration result =
       solve_quietly(a, b, method, plane_a, plane_b, stride, weights, time_offset, max_gap, nominal);

@@ -161,12 +161,50 @@ Array to_array(const py::handle& object, const char* name, const char* expected)
   return numbers;
 }
 
-double to_number(const py::handle& object, const char* name, const char* expected) {
+namespace {
+
+/// "expected seconds, got None", with the type of what has a long text.
+[[noreturn]] void refuse_type(const py::handle& object, const char* name, const char* expected) {
+  const bool shown = object.is_none() || py::isinstance<py::bool_>(object) ||
+                     py::isinstance<py::int_>(object) || py::isinstance<py::float_>(object);
+  refuse(name, std::string("expected ") + expected + ", got " +
+                   (shown ? py::repr(object).cast<std::string>().substr(0, 40)
+                          : "a value of type " + std::string(Py_TYPE(object.ptr())->tp_name)));
+}
+
+template <typename Value>
+Value to_value(const py::handle& object, const char* name, const char* expected) {
   try {
-    return object.cast<double>();
+    return object.cast<Value>();
   } catch (const py::cast_error&) {
-    refuse(name, std::string("expected ") + expected);
+    refuse_type(object, name, expected);
   }
+}
+
+}  // namespace
+
+double to_number(const py::handle& object, const char* name, const char* expected) {
+  return to_value<double>(object, name, expected);
+}
+
+int to_whole_number(const py::handle& object, const char* name, const char* expected) {
+  return to_value<int>(object, name, expected);
+}
+
+bool to_truth(const py::handle& object, const char* name) {
+  return to_value<bool>(object, name, "True or False");
+}
+
+std::string to_text(const py::handle& object, const char* name, const char* expected) {
+  return to_value<std::string>(object, name, expected);
+}
+
+py::sequence to_sequence(const py::handle& object, const char* name, const char* expected) {
+  if (PySequence_Check(object.ptr()) == 0 || PySequence_Size(object.ptr()) < 0) {
+    PyErr_Clear();
+    refuse_type(object, name, expected);
+  }
+  return py::reinterpret_borrow<py::sequence>(object);
 }
 
 Eigen::Matrix4d to_matrix4(const py::handle& object, const char* name) {

@@ -27,6 +27,12 @@ using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 Array to_array(const py::handle& object, const char* name, const char* expected);
 /// One number; throws ValueError likewise.
 double to_number(const py::handle& object, const char* name, const char* expected);
+/// A whole number of the size of an int, True or False, a text; throw ValueError likewise.
+int to_whole_number(const py::handle& object, const char* name, const char* expected);
+bool to_truth(const py::handle& object, const char* name);
+std::string to_text(const py::handle& object, const char* name, const char* expected);
+/// A sequence that has a length; throws ValueError likewise.
+py::sequence to_sequence(const py::handle& object, const char* name, const char* expected);
 
 /// (4, 4) and (8, 8) numbers; throw ValueError likewise.
 Eigen::Matrix4d to_matrix4(const py::handle& object, const char* name);

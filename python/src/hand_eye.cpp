@@ -82,8 +82,13 @@ Pose pose_of(const Rows& rotations, const Rows& translations, std::size_t i, con
   return to_pose(matrix, list, i);
 }
 
-std::vector<Pose> poses_of(const py::sequence& rotations, const py::sequence& translations,
-                           const char* name) {
+/// name: "gripper2base"; the arguments are R_gripper2base and t_gripper2base.
+std::vector<Pose> poses_of(const py::object& R_list, const py::object& t_list, const char* name) {
+  const auto of = [&](const py::object& list, const char* begin, const char* expected) {
+    return to_sequence(list, (std::string(begin) + name).c_str(), expected);
+  };
+  const py::sequence rotations = of(R_list, "R_", "a sequence of 3 x 3 rotations or rotation vectors"),
+                     translations = of(t_list, "t_", "a sequence of translations of 3 numbers");
   if (rotations.size() != translations.size())
     throw py::value_error(std::string(name) + ": as many rotations as translations are expected");
   const Rows R(rotations, name, "3 x 3 rotations or rotation vectors"),
@@ -94,9 +99,10 @@ std::vector<Pose> poses_of(const py::sequence& rotations, const py::sequence& tr
   return poses;
 }
 
-py::object calibrate_hand_eye(const py::sequence& R_gripper2base, const py::sequence& t_gripper2base,
-                              const py::sequence& R_target2cam, const py::sequence& t_target2cam,
-                              bool details) {
+py::object calibrate_hand_eye(const py::object& R_gripper2base, const py::object& t_gripper2base,
+                              const py::object& R_target2cam, const py::object& t_target2cam,
+                              const py::object& with_details) {
+  const bool details = to_truth(with_details, "details");
   const std::vector<Pose> gripper = poses_of(R_gripper2base, t_gripper2base, "gripper2base"),
                           target = poses_of(R_target2cam, t_target2cam, "target2cam");
   if (gripper.size() != target.size())

@@ -18,9 +18,12 @@ namespace {
 
 using namespace pybind11::literals;
 
-void require_weight(double weight, const char* name) {
+double to_weight(const py::object& object, const char* name) {
+  constexpr const char* expected = "a finite number, 0 or more";
+  const double weight = to_number(object, name, expected);
   if (!(weight >= 0) || !std::isfinite(weight))
-    throw py::value_error(std::string(name) + ": expected a finite number, 0 or more");
+    throw py::value_error(std::string(name) + ": expected " + expected);
+  return weight;
 }
 
 /// The matrix of an object, which must be finite and symmetric as a cost matrix always is; without that there
@@ -64,23 +67,28 @@ void bind_statistics(py::module_& module) {
       .def(py::init<>())
       .def(
           "add",
-          [](Statistics& statistics, const py::object& motion_a, const py::object& motion_b, double weight) {
-            require_weight(weight, "weight");
+          [](Statistics& statistics, const py::object& motion_a, const py::object& motion_b,
+             const py::object& weight) {
+            const double weight_of_pair = to_weight(weight, "weight");
             statistics.add(to_dual_quaternion(to_pose(to_matrix4(motion_a, "motion_a"), "motion_a")),
-                           to_dual_quaternion(to_pose(to_matrix4(motion_b, "motion_b"), "motion_b")), weight);
+                           to_dual_quaternion(to_pose(to_matrix4(motion_b, "motion_b"), "motion_b")),
+                           weight_of_pair);
           },
           "Adds one pair of motions over the same time, (4, 4) each: the later pose in the earlier one.",
           "motion_a"_a, "motion_b"_a, "weight"_a = 1.0)
-      .def("__iadd__", [](Statistics& self, const Statistics& other) -> Statistics& { return self += other; })
-      .def("__add__", [](Statistics self, const Statistics& other) { return self += other; })
+      .def(
+          "__iadd__", [](Statistics& self, const Statistics& other) -> Statistics& { return self += other; },
+          py::is_operator())
+      .def(
+          "__add__", [](Statistics self, const Statistics& other) { return self += other; },
+          py::is_operator())
       .def("__len__", [](const Statistics& statistics) { return statistics.count; })
       .def(
           "cost_matrix",
-          [](const Statistics& statistics, double rotation,
-             double translation) -> Eigen::Matrix<double, 8, 8> {
-            require_weight(rotation, "rotation");
-            require_weight(translation, "translation");
-            return cost_matrix(statistics, Balance{rotation, translation});
+          [](const Statistics& statistics, const py::object& rotation,
+             const py::object& translation) -> Eigen::Matrix<double, 8, 8> {
+            const Balance balance{to_weight(rotation, "rotation"), to_weight(translation, "translation")};
+            return cost_matrix(statistics, balance);
           },
           "(8, 8): Q of (16)", "rotation"_a = 1.0, "translation"_a = 1.0)
       .def(py::pickle(

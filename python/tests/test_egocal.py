@@ -144,6 +144,39 @@ def test_options_that_cannot_be_understood_are_value_errors(drive):
         egocal.solve(rows, rows, weights=(1e-300, 1e-300))
 
 
+def test_values_of_a_wrong_type_are_named_in_one_line(drive):
+    """pybind11 printed all of the signature and the arrays, in several lines."""
+    rows = np.loadtxt(drive[0])
+    turns, places = [np.array([0.1 * i, 0.2, 0.3]) for i in range(5)], [np.ones(3)] * 5
+    statistics = egocal.Statistics()
+
+    def hand_eye(place, value):
+        lists = [turns, places, turns, places]
+        lists[place] = value
+        return egocal.calibrate_hand_eye(*lists)
+
+    wrong = [None, 5, 0.5, iter(turns), {1: 2}, np.array(3.0)]
+    calls = [(name, lambda place=place, value=value: hand_eye(place, value)) for value in wrong
+             for place, name in enumerate(["R_gripper2base", "t_gripper2base", "R_target2cam", "t_target2cam"])]
+    calls.append(("details", lambda: egocal.calibrate_hand_eye(turns, places, turns, places, details="yes")))
+    for name, values in [("method", [None, 5]), ("stride", [1.5, "auto", 10**30]), ("max_gap", [None, "long"]),
+                         ("time_offset", [[1, 2]])]:
+        calls += [(name, lambda name=name, value=value: egocal.solve(rows, rows, **{name: value})) for value in values]
+    for value in (None, "much", [1]):
+        calls += [("weight", lambda value=value: statistics.add(np.eye(4), np.eye(4), value)),
+                  ("rotation", lambda value=value: statistics.cost_matrix(value)),
+                  ("translation", lambda value=value: statistics.cost_matrix(1, value))]
+    for name, call in calls:
+        with pytest.raises(ValueError, match=f"^{name}: expected [^\\n]*, got [^\\n]*$"):
+            call()
+    with pytest.raises(ValueError, match="t_target2cam: expected a sequence of translations of 3 numbers, got None"):
+        hand_eye(3, None)
+    with pytest.raises(TypeError, match="unsupported operand"):
+        statistics + 1
+    with pytest.raises(TypeError, match="unsupported operand"):
+        statistics += None
+
+
 def test_no_number_that_is_none_reaches_the_statistics():
     statistics, nan = egocal.Statistics(), float("nan")
     for weight in (-1, nan, float("inf")):
