@@ -286,6 +286,20 @@ TEST_F(Commands, AlignHasOnlyTheOptionsThatItTakes) {
   EXPECT_THAT(help, HasSubstr("--scale-b"));
 }
 
+// Bytes of a name made the page no UTF-8, and a mark in one turned the text behind it round.
+TEST_F(Commands, AReportIsValidWhateverItsFilesAreCalled) {
+  ASSERT_EQ(egocal("simulate --poses 60 --noise 0.01 --out " + path("drive")).code, 0);
+  const std::string name = path("<b>\xff \xe2\x80\xaemut.tum"), html = "&lt;b&gt;?  mut.tum";
+  std::filesystem::rename(path("drive/lidar.tum"), name);
+  egocal("report '" + name + "' " + path("drive/camera.tum") + " --out " + path("page.html"));
+  const std::string page = read(path("page.html"));
+  EXPECT_THAT(page, HasSubstr("in the frame of " + path(html)));
+  EXPECT_THAT(page, HasSubstr("<code>" + path(html) + "</code>"));
+  EXPECT_THAT(page, HasSubstr("<meta name='viewport' "));
+  EXPECT_EQ(page.find('\xff'), std::string::npos);
+  EXPECT_EQ(page.find("\xe2\x80\xae"), std::string::npos);
+}
+
 // The numbers of solve were not on the page, and its pictures were of other motions
 TEST_F(Commands, AReportStatesTheFitThatSolvePrints) {
   ASSERT_EQ(egocal("simulate --poses 300 --noise 0.01 --out " + path("drive")).code, 0);

@@ -11,6 +11,7 @@
 #include "egocal/degrees.hpp"
 #include "egocal/directions.hpp"
 #include "egocal/evaluation/errors.hpp"
+#include "egocal/printable.hpp"
 #include "egocal/version.hpp"
 #include "figures/plot.hpp"
 #include "offline/common/backing_of.hpp"
@@ -35,10 +36,16 @@ table { border-collapse: collapse; } td, th { padding: .15rem .8rem .15rem 0; te
 td.number { font-variant-numeric: tabular-nums; text-align: right; } code, pre { font-size: .9rem; }
 pre { overflow-x: auto; background: #f7f7f7; padding: .5rem; } .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(20rem, 100%), 1fr)); gap: 1rem; }
 figure { margin: 0; max-width: 100%; } svg { width: 100%; height: auto; } .note { color: #444; }
-@media (max-width: 45rem) { .wide, .wide tbody, .wide tr, .wide th, .wide td { display: block; } .wide td { padding: 0 0 .5rem; } }
+@media (max-width: 45rem) { pre { font-size: min(.9rem, 2.8vw); } .wide, .wide tbody, .wide tr, .wide th, .wide td { display: block; } .wide td { padding: 0 0 .5rem; } }
 @media print { body { margin: 0; max-width: none; } h2 { break-after: avoid; } figure, table { break-inside: avoid; } }
 </style>
 )";
+
+/// What users name: a page is UTF-8 whatever a file's name is, and no name turns the text behind it round.
+std::string named(const std::string& text) {
+  constexpr std::size_t longest = 10'000;  // a limit [bytes]
+  return escaped(printable(text, longest));
+}
 
 std::string row(const std::string& label, const std::string& value) {
   return fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", escaped(label), value);
@@ -150,8 +157,8 @@ std::string rows_of_motions(const ReportInput& input) {
 std::string settings(const ReportInput& input) {
   const Calibration& calibration = input.calibration;
   std::string table = "<table class='wide'>\n";
-  table += row("sensor a", "<code>" + escaped(input.name_a) + "</code>");
-  table += row("sensor b", "<code>" + escaped(input.name_b) + "</code>");
+  table += row("sensor a", "<code>" + named(input.name_a) + "</code>");
+  table += row("sensor b", "<code>" + named(input.name_b) + "</code>");
   table += row("mode", calibration.problem.mode == Mode::planar ? "planar" : "three-dimensional");
   table += rows_of_motions(input);
   const char* scaled = input.options.scale_side == Side::a ? "a" : "b";
@@ -164,10 +171,10 @@ std::string settings(const ReportInput& input) {
                                       calibration.scale->certified ? " and proven" : ""));
   else if (calibration.scale_applied != 1)
     table += row("scale", fmt::format("{:.6g} times the lengths of {}", calibration.scale_applied, scaled));
-  for (const std::string& warning : input.warnings) table += row("warning", escaped(warning));
+  for (const std::string& warning : input.warnings) table += row("warning", named(warning));
   table += row("method", escaped(input.method));
   table += row("version", std::string("egocal ") + version());
-  table += row("command", "<code>" + escaped(input.command) + "</code>");
+  table += row("command", "<code>" + named(input.command) + "</code>");
   return table + "</table>\n";
 }
 
@@ -177,10 +184,11 @@ std::string report_html(const ReportInput& input) {
   const Calibration& calibration = input.calibration;
   const Certificate& certificate = calibration.certificate;
   std::string out =
-      "<!DOCTYPE html>\n<html lang='en'>\n<head>\n<meta charset='utf-8'>\n<title>Calibration of " +
-      escaped(input.name_b) + " in " + escaped(input.name_a) + "</title>\n" + style +
-      "</head>\n<body>\n<h1>Extrinsic calibration</h1>\n<p class='note'>" + escaped(input.name_b) +
-      " in the frame of " + escaped(input.name_a) + "</p>\n";
+      "<!DOCTYPE html>\n<html lang='en'>\n<head>\n<meta charset='utf-8'>\n"
+      "<meta name='viewport' content='width=device-width'>\n<title>Calibration of " +
+      named(input.name_b) + " in " + named(input.name_a) + "</title>\n" + style +
+      "</head>\n<body>\n<h1>Extrinsic calibration</h1>\n<p class='note'>" + named(input.name_b) +
+      " in the frame of " + named(input.name_a) + "</p>\n";
   const std::string word = input.verdict.substr(0, input.verdict.find(':'));
   out += "<p class='verdict " + escaped(word) + "'>" + escaped(input.verdict) + "</p>\n";
   out += trust_page(calibration);
