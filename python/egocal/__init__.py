@@ -12,19 +12,35 @@ repaired or lost while reading, and what is wrong for certain although the verdi
 import json as _json
 import math as _math
 
-from ._egocal import (  # noqa: F401
-    Calibration,
-    EgocalWarning,
-    Error,
-    Statistics,
-    __version__,
-    calibrate_hand_eye,
-    solve,
-    solve_dual,
-    verify,
-)
+from . import _egocal
+from ._egocal import Calibration, EgocalWarning, Error, Statistics, __version__  # noqa: F401
 
 __all__ = ["Calibration", "EgocalWarning", "Error", "Statistics", "calibrate_hand_eye", "solve", "solve_dual", "verify"]
+
+
+# Functions of Python: pickle takes them (multiprocessing), and a name that is misspelt is a line of Python instead of several of pybind11.
+
+
+def solve(a, b, *, method="global", plane_a=None, plane_b=None, stride=None, weights="auto", time_offset=0.0, max_gap=0.5,
+          nominal=None):
+    return _egocal.solve(a, b, method=method, plane_a=plane_a, plane_b=plane_b, stride=stride, weights=weights, time_offset=time_offset,
+                         max_gap=max_gap, nominal=nominal)
+
+
+def calibrate_hand_eye(R_gripper2base, t_gripper2base, R_target2cam, t_target2cam, *, details=False):
+    return _egocal.calibrate_hand_eye(R_gripper2base, t_gripper2base, R_target2cam, t_target2cam, details=details)
+
+
+def solve_dual(Q):
+    return _egocal.solve_dual(Q)
+
+
+def verify(Q, T_a_b):
+    return _egocal.verify(Q, T_a_b)
+
+
+for _function in (solve, calibrate_hand_eye, solve_dual, verify):
+    _function.__doc__ = getattr(_egocal, _function.__name__).__doc__.partition("\n\n")[2]  # without pybind11's signature
 
 
 def _to_dict(self):

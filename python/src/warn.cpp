@@ -20,8 +20,8 @@ void bind_warning(py::module_& module) {
 
 void warn(const std::string& text) {
   const py::object category = py::module_::import("egocal._egocal").attr("EgocalWarning");
-  // level 1: functions of C++ have no frame, so this is their caller's
-  if (PyErr_WarnEx(category.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
+  // level 2: the caller of the function of egocal/__init__.py, as functions of C++ have no frame
+  if (PyErr_WarnEx(category.ptr(), text.c_str(), 2) != 0) throw py::error_already_set();
 }
 
 void warn_of(const Calibration& calibration, const std::vector<std::string>& notes) {

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 the egocal developers
 # SPDX-License-Identifier: BSD-3-Clause
 import copy
+import inspect
 import json
 import os
 import pathlib
@@ -175,6 +176,22 @@ def test_values_of_a_wrong_type_are_named_in_one_line(drive):
         statistics + 1
     with pytest.raises(TypeError, match="unsupported operand"):
         statistics += None
+
+
+def test_functions_are_functions_of_python(drive):
+    """Those of pybind11 cannot be pickled, and answer a misspelt name by their signature and all arrays."""
+    for function in (egocal.solve, egocal.calibrate_hand_eye, egocal.solve_dual, egocal.verify):
+        assert pickle.loads(pickle.dumps(function)) is function
+        assert function.__doc__.strip() and not function.__doc__.startswith(function.__name__ + "(")
+    rows = np.loadtxt(drive[0])
+    for call in (lambda: egocal.solve(rows), lambda: egocal.solve(rows, rows, "global"), lambda: egocal.solve(rows, rows, methd="fast"),
+                 lambda: egocal.calibrate_hand_eye([], []), lambda: egocal.solve_dual(), lambda: egocal.verify(Q=rows)):
+        with pytest.raises(TypeError, match=r"^(solve|calibrate_hand_eye|solve_dual|verify)\(\) [^\n]*$"):
+            call()
+    native = egocal._egocal.solve.__doc__.partition("\n")[0]
+    for name, parameter in inspect.signature(egocal.solve).parameters.items():
+        if parameter.default is not parameter.empty:
+            assert f"{name}: object = {parameter.default!r}" in native
 
 
 def test_no_number_that_is_none_reaches_the_statistics():
