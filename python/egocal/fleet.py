@@ -7,6 +7,7 @@
 import argparse
 import csv
 import math
+import os
 import sys
 
 import numpy as np
@@ -44,6 +45,8 @@ def _client(scheduler, workers):
         raise ImportError("egocal.fleet needs Dask: the Debian packages python3-dask and python3-distributed") from error
     if scheduler:
         return distributed.Client(scheduler)
+    if workers is not None and workers < 1:
+        raise ValueError(f"workers: expected 1 or more, got {workers}")  # Dask would wait for ever
     return distributed.Client(n_workers=workers, threads_per_worker=1, dashboard_address=None)
 
 
@@ -142,7 +145,10 @@ def pool(answers):
 
 def read_table(file):
     with open(file, newline="", encoding="utf-8-sig") as stream:
-        rows = list(csv.DictReader(stream))
+        try:
+            rows = list(csv.DictReader(stream))
+        except (csv.Error, UnicodeDecodeError) as error:
+            raise ValueError(f"{file}: is no table of drives: {error}") from error
     for number, row in enumerate(rows, 2):
         for column in ("a", "b"):
             if not row.get(column):
@@ -160,10 +166,28 @@ def write_table(file, rows):
         import pandas
         pandas.DataFrame([{name: row.get(name) for name in columns} for row in rows]).to_parquet(file)
         return
-    with open(file, "w", newline="", encoding="utf-8") as stream:
-        writer = csv.DictWriter(stream, columns)
-        writer.writeheader()
-        writer.writerows(plain)
+    in_place = os.path.exists(file) and not os.path.isfile(file)  # a pipe or a device
+    target = file if in_place else f"{os.path.realpath(file)}.{os.getpid()}.part"
+    try:
+        with open(target, "w", newline="", encoding="utf-8") as stream:
+            writer = csv.DictWriter(stream, columns)
+            writer.writeheader()
+            writer.writerows(plain)
+        if not in_place:
+            os.replace(target, os.path.realpath(file))
+    except OSError as error:
+        if not in_place and os.path.exists(target):
+            os.remove(target)
+        raise OSError(f"{file}: cannot be written: {error.strerror}") from error
+
+
+def require_writable(*files):
+    """Says before the work, not after it, that a table cannot be written."""
+    for file in filter(None, files):
+        folder = os.path.dirname(os.path.realpath(file))
+        if os.path.isdir(file) or not os.path.isdir(folder) or not os.access(folder, os.W_OK):
+            why = "it is a folder" if os.path.isdir(file) else f"{folder} is no folder that can be written to"
+            raise OSError(f"{file}: cannot be written: {why}")
 
 
 def require_parquet(*files):
@@ -192,6 +216,7 @@ def main(arguments=None):
 
     try:
         require_parquet(asked.out, asked.pooled)
+        require_writable(asked.out, asked.pooled)
         answers = solve(read_table(asked.drives), asked.scheduler, asked.workers, progress)
         write_table(asked.out, answers)
         if asked.pooled:

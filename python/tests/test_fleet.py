@@ -89,6 +89,49 @@ def test_it_runs_as_a_program(drives, tmp_path):
     assert next(csv.DictReader(open(rigs, newline="")))["used"] == "2"
 
 
+def test_a_table_that_cannot_be_written_is_refused_before_the_work(tmp_path, capsys):
+    def never(*_):
+        raise AssertionError("the work began")
+
+    table = tmp_path / "drives.csv"
+    table.write_text("a,b\n1,2\n")
+    for out, pooled in [(tmp_path / "none" / "out.csv", None), (tmp_path, None), (tmp_path / "out.csv", tmp_path)]:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(egocal.fleet, "solve", never)
+            assert egocal.fleet.main([str(table), "--out", str(out), *(["--pooled", str(pooled)] if pooled else [])]) == 1
+        assert f"{pooled or out}: cannot be written: " in capsys.readouterr().err
+    assert [file.name for file in tmp_path.iterdir()] == ["drives.csv"]
+
+
+def test_a_table_is_written_whole_or_not_at_all(tmp_path):
+    file = tmp_path / "out.csv"
+    egocal.fleet.write_table(file, [{"a": 1}])
+
+    class Bad:
+        def __str__(self):
+            raise OSError(28, "No space left on device")
+
+    with pytest.raises(OSError, match="out.csv: cannot be written: No space"):
+        egocal.fleet.write_table(file, [{"a": "x" * 100000}, {"a": Bad()}])
+    assert file.read_bytes() == b"a\r\n1\r\n" and [entry.name for entry in tmp_path.iterdir()] == ["out.csv"]
+    with pytest.raises(OSError, match="/dev/full: cannot be written: No space"):
+        egocal.fleet.write_table("/dev/full", [{"a": 1}])
+
+
+@pytest.mark.parametrize("workers", [0, -1])
+def test_no_worker_is_no_choice(workers):
+    with pytest.raises(ValueError, match=f"workers: expected 1 or more, got {workers}"):
+        egocal.fleet.solve([{"a": "1", "b": "2"}], workers=workers)
+
+
+def test_what_is_no_table_is_refused_in_one_line(tmp_path):
+    file = tmp_path / "drives.csv"
+    for content, why in [(b"a,b\n" + b"x" * 200000 + b",2\n", "field larger"), (b"a,b\n\xff,2\n", "decode"), (b"", "no drive")]:
+        file.write_bytes(content)
+        with pytest.raises(ValueError, match=f"drives.csv: .*{why}"):
+            egocal.fleet.read_table(file)
+
+
 def test_parquet_is_refused_before_the_work_where_it_cannot_be_written(drives, tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     monkeypatch.setattr(egocal.fleet, "solve", lambda *_: pytest.fail("worked before it looked"))
