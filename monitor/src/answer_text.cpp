@@ -251,7 +251,7 @@ Label scale_text(const bus::CheckedScale& scale, Charset charset) {
 }
 
 std::string pair_title(const PairState& pair, Charset charset, std::size_t max) {
-  return clean(pair.a, max) + " " + symbols(charset).arrow + " " + clean(pair.b, max);
+  return clean_name(pair.a, max) + " " + symbols(charset).arrow + " " + clean_name(pair.b, max);
 }
 
 std::string pair_in(const std::string& a, const std::string& b, int cells, Charset charset) {

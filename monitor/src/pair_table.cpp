@@ -3,6 +3,7 @@
 // The table of all pairs: one row a pair, its columns as layout_pair_table() places them.
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
@@ -81,6 +82,17 @@ const char* heading_of(PairColumn column, ErrorKind error, Charset charset) {
   return "";
 }
 
+/// A number with as many decimals as leave a blank before it, or as a power of ten: a part of a number is
+/// another one.
+std::string in_cells(double value, int decimals, int cells, Charset charset) {
+  for (int shown = decimals; shown >= 0; --shown)
+    if (const std::string text = number(value, shown, charset); width_of(text) < cells)
+      return pad_left(text, cells);
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.0e", value);
+  return pad_left(text.data(), cells);
+}
+
 /// Three components of the transform, from x or from roll on, with the largest of their standard deviations.
 std::string three_components(const PairState& pair, int from, Charset charset) {
   if (!pair.shown.valid) return "-";
@@ -88,8 +100,8 @@ std::string three_components(const PairState& pair, int from, Charset charset) {
   const std::array<double, 6> values = components(pair.shown.T_a_b);
   std::string text;
   for (int i = from; i < from + 3; ++i)
-    text += pad_left(number(values[static_cast<std::size_t>(i)] * scale_of(i), decimals, charset),
-                     i == from ? 6 : 7);
+    text += in_cells(values[static_cast<std::size_t>(i)] * scale_of(i), decimals, 7, charset);
+  text.erase(0, 1);  // the blank before the first one
   return text + " " + symbols(charset).plus_minus +
          number(largest_stddev(pair.shown, static_cast<std::size_t>(from)) * scale_of(from), decimals,
                 charset);

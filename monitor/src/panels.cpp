@@ -19,6 +19,11 @@ void draw_title(const Pane& pane, const std::string& title, Charset charset) {
 
 namespace {
 
+/// Padded to a width, and wider rather than cut: a number without its last digit is another one.
+std::string padded_number(const std::string& text, int width) {
+  return pad_right(text, std::max(width, width_of(text)));
+}
+
 /// The order in which processes are listed when there is no room for all: those that are gone first, monitors
 /// of other users last.
 std::vector<const ProcessState*> in_order(const std::vector<ProcessState>& processes) {
@@ -84,10 +89,11 @@ void draw_processes(const Pane& pane, const Model& model, bool title, Charset ch
       x = pane.text(x, y, pad_right(out, 7)) + 1;
     }
     x = pane.text(x, y, "lost ", Style::dim);
-    x = pane.text(x, y, pad_right(count(process->lost), 4), process->lost ? Style::warning : Style::normal) +
+    x = pane.text(x, y, padded_number(count(process->lost), 4),
+                  process->lost ? Style::warning : Style::normal) +
         1;
     x = pane.text(x, y, "rejected ", Style::dim);
-    x = pane.text(x, y, pad_right(count(process->rejected), 5),
+    x = pane.text(x, y, padded_number(count(process->rejected), 5),
                   process->rejected ? Style::warning : Style::normal) +
         1;
     const bool error = !status.last_error.empty();

@@ -121,6 +121,48 @@ TEST_F(View, PairsOfOneSensorCanBeToldApart) {
   EXPECT_THAT(shown(Screen::overview, 200, 40), HasSubstr("lidar_top_front → radar_"));
 }
 
+// Not even the question whether to forget a pair's motions said which of them is meant.
+TEST_F(View, ALongNameIsCutWhereItDoesNotDifferOnCardsAndInQuestions) {
+  model = Model();
+  for (const char* b : {"front_left_upper_roof_camera_018", "front_left_upper_roof_camera_019"})
+    model.on_problem(test::problem_at("lidar", b, 1, 10), some_time);
+  EXPECT_THAT(shown(Screen::overview, 110, 40), HasSubstr("amera_018 "));
+  view.selected = 1;
+  for (const int w : {40, 60, 80, 110}) EXPECT_THAT(shown(Screen::detail, w, 24), HasSubstr("a_019 ")) << w;
+  for (const Dialog dialog : {Dialog::reset, Dialog::pause, Dialog::resume, Dialog::export_format}) {
+    view.dialog = dialog;
+    EXPECT_THAT(shown(Screen::overview, 80, 24), HasSubstr("camera_019"));
+  }
+}
+
+TEST_F(View, NoNumberLosesADigit) {
+  for (const std::int64_t lost : {54'321, 99'999, 123'456'789}) {
+    status_t status = test::status_of("egocal-pairing", "pairing", 5);
+    for (const char* name : {"lost", "rejected: late"}) {
+      counter_t& counter = status.counters.emplace_back();
+      counter.name = name;
+      counter.value = lost;
+    }
+    status.n_counters = static_cast<std::int32_t>(status.counters.size());
+    model.on_status(status, some_time);
+    const std::string text = count(lost);
+    EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("lost " + text + " "));
+    EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("rejected " + text + " "));
+  }
+  // millimetres taken for metres
+  for (const auto& [metres, text] : {std::pair{1000.0, " 1e+05 -1e+05 "},
+                                     {-1000.0, "-1e+05  1e+05 "},
+                                     {-123.456, "-12346  12346 "},
+                                     {-1.5, "-150.0  150.0 "}}) {
+    send([](problem_t&) {},
+         [metres = metres](calibration_t& answer) {
+           answer.pos[0] = metres;
+           answer.pos[1] = -metres;
+         });
+    EXPECT_THAT(shown(Screen::overview, 160, 8), HasSubstr(text));
+  }
+}
+
 TEST_F(View, AStrideThatIsNotInForceIsNotShown) {
   EXPECT_THAT(shown(Screen::detail, 140, 42), HasSubstr("stride 1"));
   send(
