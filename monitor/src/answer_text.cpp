@@ -184,7 +184,11 @@ std::string unanswered_text(const PairState& pair, Charset charset) {
 }
 
 std::string answer_age(const PairState& pair, const SolverTrack& solver, Now now) {
-  return age(std::max({seconds_between(solver.at.mono_us, now.mono_us), pair.standing, pair.old}));
+  // while pairing is silent solvers repeat their answers
+  const double without_motion =
+      pair.silent && pair.has_problem ? seconds_between(pair.motion_mono_us, now.mono_us) : 0;
+  return age(
+      std::max({seconds_between(solver.at.mono_us, now.mono_us), pair.standing, pair.old, without_motion}));
 }
 
 std::string standing_text(const PairState& pair) {

@@ -57,6 +57,7 @@ void carry_out(const Action& action, const Model& model, ViewState& view, Source
           write_export(action.a, action.b, action.format, extrinsic_text(*extrinsic, action.format));
       view.notice = "wrote " + file +
                     (pair->old > 0          ? " (an old answer: not to be used)"
+                     : !extrinsic->usable   ? " (not to be used)"
                      : extrinsic->certified ? ""
                                             : " (not certified)");
     } catch (const Error& error) {

@@ -45,9 +45,10 @@ void Model::watch_motions(PairState& pair, Now now) {
 }
 
 bool is_good(const PairState& pair) {
-  return pair.answer() && pair.answer()->status == 0 && pair.counted_solver()->verified && pair.shown.valid &&
-         pair.old == 0 && pair.verdict && pair.verdict->diagnosis.verdict == Verdict::good &&
-         pair.verdict->old == 0 && !departure_of(pair);
+  const bool finds_no_motion = pair.standing > 0 && !pair.why_standing.empty();
+  return pair.answer() && !finds_no_motion && pair.answer()->status == 0 && pair.counted_solver()->verified &&
+         pair.shown.valid && pair.old == 0 && pair.verdict &&
+         pair.verdict->diagnosis.verdict == Verdict::good && pair.verdict->old == 0 && !departure_of(pair);
 }
 
 }  // namespace egocal::monitor

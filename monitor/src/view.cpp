@@ -296,6 +296,11 @@ std::optional<NamedExtrinsic> extrinsic_of(const PairState& pair) {
     extrinsic.reason = bus::in_words(*moved);
     extrinsic.usable = false;
   }
+  // as on the screen: a verdict of the past is not stated as one of this answer
+  if (pair.old > 0 || (pair.verdict && pair.verdict->old > 0)) {
+    extrinsic.verdict.clear();
+    extrinsic.reason = advice_of(pair).text;
+  }
   if (pair.old > 0) extrinsic.usable = false;
   extrinsic.stddev = pair.shown.observability.stddev;
   bus::CheckedAnswer heard;

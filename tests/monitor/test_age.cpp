@@ -162,6 +162,54 @@ TEST_F(AnswerAge, ASessionWithoutMotionLeavesAnOldOneAndTheCause) {
   EXPECT_THAT(shown(Screen::overview), Not(HasSubstr("SILENT")));
 }
 
+// One sensor is silent, and pairing repeats what it has: the header had counted such an answer as good.
+TEST_F(AnswerAge, APairThatFindsNoMotionIsNotCountedAsGood) {
+  drive(0, 10, true);
+  model.set_why_standing(0, "camera sends nothing");
+  const auto repeat_until = [&](int end) {
+    for (int second = 10; second < end; ++second) {
+      model.on_problem(problem, at(second));
+      model.on_calibration(test::calibration_at(problem, false), at(second));
+      judge(at(second));
+      model.tick(at(second));
+    }
+  };
+  repeat_until(12);
+  expect_good();
+  repeat_until(20);
+  EXPECT_THAT(shown(Screen::overview), HasSubstr("? no motion"));
+  EXPECT_THAT(shown(Screen::overview), HasSubstr("0 of 1 good"));
+}
+
+// Its age fell from 13 to 5 seconds when pairing ended.
+TEST_F(AnswerAge, DoesNotFallWhenPairingEnds) {
+  status_t pairing = test::status_of("egocal-pairing", "pairing", 0);
+  model.on_status(pairing, at(0));
+  drive(0, 10, true);
+  for (int second = 10; second < 30; ++second) {
+    model.on_problem(problem, at(second));
+    model.on_calibration(test::calibration_at(problem, false), at(second));
+    model.tick(at(second));
+  }
+  EXPECT_THAT(shown(Screen::overview), HasSubstr("motions   19 s"));
+  pairing.state = "ended";
+  model.on_status(pairing, at(30));
+  for (int second = 30; second < 36; ++second) {
+    model.on_calibration(test::calibration_at(problem, false), at(second));
+    model.tick(at(second));
+  }
+  EXPECT_THAT(shown(Screen::overview), HasSubstr("ENDED"));
+  EXPECT_THAT(shown(Screen::overview), HasSubstr("motions   25 s"));
+}
+
+TEST_F(AnswerAge, WhatIsExportedOfAnOldOneDoesNotStateItsVerdict) {
+  drive(0, 10, true);
+  EXPECT_EQ(extrinsic_of(model.pairs()[0])->verdict, "good");
+  drive(10, 40, true, false);
+  EXPECT_EQ(extrinsic_of(model.pairs()[0])->verdict, "");
+  EXPECT_THAT(extrinsic_of(model.pairs()[0])->reason, HasSubstr("pairing is silent for 30"));
+}
+
 TEST_F(AnswerAge, AMonitorThatCameLaterKnowsNoProblemAndVerifiesNothing) {
   problem = test::problem_at("lidar", "camera", 100, 10);
   model.on_calibration(test::calibration_at(problem, false), at(0), false);
