@@ -19,6 +19,10 @@ void draw_title(const Pane& pane, const std::string& title, Charset charset) {
 
 namespace {
 
+// columns of the screen
+constexpr int cells_of_error = 30;  // of a process that begin to say what is wrong
+constexpr int width_with_rates = 60, width_with_rates_and_error = 78 + cells_of_error;
+
 /// Padded to a width, and wider rather than cut: a number without its last digit is another one.
 std::string padded_number(const std::string& text, int width) {
   return pad_right(text, std::max(width, width_of(text)));
@@ -57,6 +61,11 @@ void draw_processes(const Pane& pane, const Model& model, bool title, Charset ch
     const std::string text = " and " + std::to_string(hidden) + " more ";
     pane.text(pane.width() - width_of(text) - 1, 0, text, Style::dim);
   }
+  // in all rows or in none, so that the columns stay one below the other
+  const bool any_error = std::any_of(order.begin(), order.end(), [](const ProcessState* process) {
+    return !process->status.last_error.empty();
+  });
+  const bool rates = pane.width() >= (any_error ? width_with_rates_and_error : width_with_rates);
   for (const ProcessState* process : order) {
     if (y >= pane.height()) break;
     const status_t& status = process->status;
@@ -78,7 +87,7 @@ void draw_processes(const Pane& pane, const Model& model, bool title, Charset ch
                             8),
                   style) +
         1;
-    if (pane.width() >= 60) {
+    if (rates) {
       const auto rate = [&](double value) {
         return value < 0 ? "-" : number(value, value > 0 && value < 9.95 ? 1 : 0, charset) + "/s";
       };
@@ -98,7 +107,8 @@ void draw_processes(const Pane& pane, const Model& model, bool title, Charset ch
         1;
     const bool error = !status.last_error.empty();
     const std::string where = "pid " + std::to_string(status.pid) + " on " + clean(status.host, 20) + "  ";
-    if (pane.width() - x >= width_of(where) + (error ? 30 : 0)) x = pane.text(x, y, where, Style::dim);
+    if (pane.width() - x >= width_of(where) + (error ? cells_of_error : 0))
+      x = pane.text(x, y, where, Style::dim);
     const auto room = static_cast<std::size_t>(std::max(0, pane.width() - x));
     if (error && room > 0) pane.text(x, y, clean(without_folders(status.last_error, room), room), Style::bad);
     ++y;

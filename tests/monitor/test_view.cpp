@@ -186,6 +186,20 @@ TEST_F(View, ProcessesSayWhoWhereAndWhatIsWrong) {
   EXPECT_THAT(shown(Screen::overview, 110, 30), HasSubstr("GONE"));
 }
 
+// At 80 columns, the width of most terminals, two characters of it were shown.
+TEST_F(View, AnErrorHasRoomBeforeTheRates) {
+  status_t status = test::status_of("egocal-pairing", "pairing", 5);
+  model.on_status(status, some_time);
+  EXPECT_THAT(shown(Screen::overview, 80, 24), HasSubstr("in "));
+  status.last_error = "/data/s.state: cannot be written: No space left on device";
+  model.on_status(status, some_time);
+  for (const int w : {80, 100, 120})
+    EXPECT_THAT(shown(Screen::overview, w, 24),
+                ::testing::ContainsRegex("rejected 0 +[~/a-z]*s\\.state: canno"))
+        << w;
+  EXPECT_THAT(shown(Screen::overview, 120, 24), HasSubstr("in "));
+}
+
 TEST_F(View, NothingIsCutInHalfBesideTheClock) {
   for (int w = 40; w < 160; ++w) {
     std::string first = shown(Screen::detail, w, 30);
