@@ -31,4 +31,8 @@ void add_product(Eigen::Matrix<double, n, 1>& sum, double weight, const Eigen::M
 /// Solution of A X = B for a symmetric, positive semidefinite A, by its LDL' factors with pivots.
 Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
+/// The same for normal equations in numbers of unlike units: each is scaled to a unit of its own, and what
+/// the equations do not show stays zero.
+Eigen::VectorXd solve_in_units(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
 }  // namespace egocal::detail

@@ -13,20 +13,6 @@ namespace egocal::detail {
 
 using MountSum = Eigen::Matrix<double, 8, 8>;
 
-namespace {
-
-/// Solution of the normal equations, each number in a unit of its own; what is not shown stays as it is.
-MountNumbers solved(const MountSum& sum, const MountNumbers& right) {
-  MountNumbers unit = MountNumbers::Zero();
-  for (int i = 0; i < unit.size(); ++i)
-    if (sum(i, i) > 0) unit[i] = 1 / std::sqrt(sum(i, i));
-  MountSum scaled = unit.asDiagonal() * sum * unit.asDiagonal();
-  scaled.diagonal().array() += 1e-9;
-  return unit.cwiseProduct(MountNumbers(solve_symmetric(scaled, unit.cwiseProduct(right))));
-}
-
-}  // namespace
-
 MountFit::MountFit(const std::vector<LinearMotion>& motions, const MountFitOptions& options)
     : motions_(motions), options_(options), sums_(options.parts), right_(options.parts) {
   std::vector<double> weights(motions.size(), 1.0);
@@ -58,7 +44,7 @@ double MountFit::stddev(const MountNumbers& of) const {
 double MountFit::agreement(const MountNumbers& of, double by) const {
   MountSum sum = MountSum::Zero();
   for (const MountSum& part : sums_) sum += part;
-  const MountNumbers towards = solved(sum, of);
+  const MountNumbers towards = solve_in_units(sum, of);
   const double size = of.dot(towards);
   if (!(size > 0)) return 0;
   // the best numbers of those where the function is less
@@ -129,7 +115,7 @@ MountNumbers MountFit::without(std::size_t omitted, FreeNumbers free) const {
   }
   if (free == FreeNumbers::none) fix(first_number);
   if (free != FreeNumbers::two) fix(second_number);
-  MountNumbers x = solved(sum, right);
+  MountNumbers x = solve_in_units(sum, right);
   if (free == FreeNumbers::one_for_both) x[second_number] = x[first_number];
   return x;
 }

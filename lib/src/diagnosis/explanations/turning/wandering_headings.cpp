@@ -107,13 +107,7 @@ class MountOfDrive {
       add_product(right, weights_[i] / translation_, motion.of_translation,
                   Vector3d(translation_left(motion)));
     }
-    // each number in a unit of its own; what is not shown stays as it is
-    Vector6d unit = Vector6d::Zero();
-    for (int i = 0; i < 6; ++i)
-      if (sum(i, i) > 0) unit[i] = 1 / std::sqrt(sum(i, i));
-    Matrix6d scaled = unit.asDiagonal() * sum * unit.asDiagonal();
-    scaled.diagonal().array() += 1e-9;
-    return unit.cwiseProduct(Vector6d(solve_symmetric(scaled, unit.cwiseProduct(right))));
+    return solve_in_units(sum, right);
   }
 
   const std::vector<HeadingMotion>& motions_;
@@ -164,9 +158,8 @@ Finding worded_wandering(char which, const WanderingHeadings& found, const Answe
              "drift.",
              mark(which)),
       ": the motions of each part of the drive agree, with an answer that changes slowly from part to part. "
-      "A "
-      "gyroscope whose bias wanders does that beside positions of another sensor; a mount that creeps looks "
-      "the same.");
+      "A gyroscope whose bias wanders does that beside positions of another sensor; a mount that creeps "
+      "looks the same.");
   return finding;
 }
 
