@@ -8,6 +8,7 @@
 #include "egocal/evaluation/errors.hpp"
 #include "egocal/online/answer.hpp"
 #include "egocal/robust/robust_statistics.hpp"
+#include "robust/consensus_search.hpp"
 
 namespace egocal::test_consensus {
 namespace {
@@ -43,6 +44,36 @@ std::vector<bool> wrong_ones(const std::vector<MotionPair>& pairs) {
     wrong.push_back((pair.a * T_a_b).vec().cwiseAbs().isApprox((T_a_b * pair.b).vec().cwiseAbs(), 0.2) ==
                     false);
   return wrong;
+}
+
+// What the search leaves out for it would have changed nothing: its scale is not smaller in either number.
+TEST(Consensus, WhatIsCalledNoTighterIsNot) {
+  int certain = 0, smaller = 0;
+  for (const double noise : {0.0, 0.01, 0.3})
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      std::vector<Statistics> parts;
+      for (const MotionPair& pair : contradictory(0.35, noise, seed, 16 + seed))
+        parts.push_back(of_one(pair));
+      const ConsensusOptions options;
+      const detail::ConsensusSearch search(Problem{}, parts, 1, options);
+      std::vector<detail::ConsensusSearch::Candidate> fits;
+      for (std::size_t first = 0; first + 4 <= parts.size(); first += 2) {
+        std::vector<double> factors(parts.size(), 0.0);
+        std::fill_n(factors.begin() + static_cast<std::ptrdiff_t>(first), 4, 1.0);
+        fits.push_back(search.fit(factors));
+      }
+      for (const auto& fit : fits)
+        for (const auto& other : fits) {
+          const ResidualScale scale = search.scale_of(fit), than = search.scale_of(other);
+          const bool is_smaller = scale.absolute < than.absolute || scale.relative < than.relative;
+          smaller += is_smaller;
+          if (!search.is_no_tighter(fit, than)) continue;
+          ++certain;
+          EXPECT_FALSE(is_smaller) << noise << ", seed " << seed;
+        }
+    }
+  EXPECT_GT(smaller, 1000);
+  EXPECT_GT(certain, 1000) << "it must save something";
 }
 
 TEST(Consensus, TheMajorityIsFoundEvenAgainstAMinorityThatAgrees) {

@@ -67,6 +67,7 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
   // the tightest fit of half of the motion shows what is typical
   ResidualScale scale = search.scale_of(starts.front());
   const auto tighten = [&](const Candidate& fit) {
+    if (search.is_no_tighter(fit, scale)) return;
     const ResidualScale here = search.scale_of(fit);
     if (product(here) < product(scale)) scale = here;
   };
@@ -77,9 +78,10 @@ std::optional<Consensus> find_consensus(const Problem& problem, std::span<const 
       search.largest_excess(starts.front(), scale) < options.unsuspicious)
     return search.consensus(std::move(starts.front()), scale, std::vector<double>(parts.size(), 1.0));
 
+  const std::size_t looked_at = starts.size();
   for (const std::size_t pieces : {8u, 16u}) fit_pieces(search, pieces, starts);
   fit_draws(search, options, starts);
-  for (const Candidate& start : starts) tighten(start);
+  for (std::size_t i = looked_at; i < starts.size(); ++i) tighten(starts[i]);
   starts.push_back(search.graduated(starts.front(), scale));
   tighten(starts.back());
 

@@ -72,6 +72,21 @@ ResidualScale ConsensusSearch::scale_of(const Candidate& fit) const {
           std::max(weighted_median(std::move(relative)), least)};
 }
 
+bool ConsensusSearch::is_no_tighter(const Candidate& fit, const ResidualScale& than) const {
+  double all = 0, below_absolute = 0, below_relative = 0;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const double motion = parts_[i].motion;
+    if (!(motion > 0)) continue;
+    all += motion;
+    if (fit.residuals[i] < than.absolute) below_absolute += motion;
+    if (fit.residuals[i] / parts_[i].size < than.relative) below_relative += motion;
+  }
+  // the median is not among what is smaller, unless sums in another order are rounded over the half
+  constexpr double slack = 1e-9;
+  const double half = 0.5 * (1 - slack) * all;
+  return below_absolute < half && below_relative < half;
+}
+
 double ConsensusSearch::excess_of(const Candidate& fit, std::size_t i, const ResidualScale& scale) const {
   return parts_[i].size > 0 ? excess(fit.residuals[i], parts_[i].size, scale, options_) : 0;
 }

@@ -32,6 +32,9 @@ class ConsensusSearch {
   /// Scale of the residuals by medians over the motion, not over time: a vehicle may be at rest for most of
   /// it.
   ResidualScale scale_of(const Candidate& fit) const;
+  /// Whether each number of scale_of() is at least that of `than`, for certain; false says nothing. It sums
+  /// twice, where scale_of() sorts twice.
+  bool is_no_tighter(const Candidate& fit, const ResidualScale& than) const;
 
   double excess_of(const Candidate& fit, std::size_t i, const ResidualScale& scale) const;
   double largest_excess(const Candidate& fit, const ResidualScale& scale) const;
