@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "egocal/solvers/sqp.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "egocal/problem/cost.hpp"
@@ -18,15 +19,38 @@ using detail::Matrix6d;
 using detail::Matrix86d;
 using detail::Vector6d;
 
+/// The lower Cholesky factor in place of a matrix, of which the lower triangle is read. False: it is not
+/// positive definite. The bits are those of Eigen::LLT, which takes longer: it also adds up all columns for a
+/// norm that is not used here, and its loops do not know the size.
+bool cholesky(Matrix6d& A) {
+  for (int k = 0; k < 6; ++k) {
+    double pivot = A(k, k);
+    if (k > 0) {
+      double square = A(k, 0) * A(k, 0);
+      for (int j = 1; j < k; ++j) square += A(k, j) * A(k, j);
+      pivot -= square;
+    }
+    if (pivot <= 0) return false;
+    A(k, k) = pivot = std::sqrt(pivot);
+    for (int i = k + 1; i < 6; ++i) {
+      double known = 0;
+      for (int j = 0; j < k; ++j) known += A(i, j) * A(k, j);
+      A(i, k) = (A(i, k) - known) / pivot;
+    }
+  }
+  return true;
+}
+
 /// -inv(H + shift I) g, or nothing where that is not positive definite or too nearly singular to be trusted.
 bool newton_step(const Matrix6d& H, const Vector6d& g, double shift, Vector6d& x) {
-  Matrix6d shifted = H;
-  shifted.diagonal().array() += shift;
-  const Eigen::LLT<Matrix6d> factor(shifted);
-  if (factor.info() != Eigen::Success) return false;
-  const auto pivots = factor.matrixLLT().diagonal();
+  Matrix6d L = H;
+  L.diagonal().array() += shift;
+  if (!cholesky(L)) return false;
+  const auto pivots = L.diagonal();
   if (!(pivots.minCoeff() > 1e-6 * pivots.maxCoeff())) return false;
-  x = factor.solve(-g);
+  x = -g;
+  L.triangularView<Eigen::Lower>().solveInPlace(x);
+  L.triangularView<Eigen::Lower>().adjoint().solveInPlace(x);
   return true;
 }
 
