@@ -7,6 +7,12 @@
 
 namespace egocal::detail {
 
+/// The rival's stride and balance, summed as the sums over strides are: without jumps.
+struct StrideAlone {
+  StrideWeights weights;
+  SpreadByPoses spread;
+};
+
 /// What the motions of the rival say of its own answer and of others.
 class SingleStrideRival {
  public:
@@ -22,8 +28,15 @@ class SingleStrideRival {
   /// rival's stride is put on trial.
   bool is_beaten_by(const SpreadByPoses& sum, double mean_stride, bool in_force, const StrideLadder& ladder,
                     TrialSpread& trial, const SeenDirections& seen) const;
+  /// The rival's stride without the motions across jumps, which the rival itself holds, where that makes its
+  /// spread clearly smaller. Empty also where there is no jump. trial: changed.
+  std::optional<StrideAlone> without_jumps(const StrideLadder& ladder, TrialSpread& trial,
+                                           const SeenDirections& seen) const;
 
  private:
+  std::optional<std::size_t> place_in(const StrideLadder& ladder) const;
+  StrideWeights alone(const StrideLadder& ladder, std::size_t place) const;
+  std::optional<SpreadByPoses> own_spread(const SeenDirections& seen) const;
   double misfit_of(const DualQuaternion& q) const;
 
   const SingleStride& rival_;

@@ -113,6 +113,27 @@ std::string reason(const WeightChoice& choice, const SpreadByPoses& spread) {
   return text;
 }
 
+/// The motions of the best single stride, without those across jumps.
+WeightChoice of_one_stride(const detail::StrideAlone& alone, int stride, const DualQuaternion& q) {
+  WeightChoice choice;
+  choice.weights = alone.weights;
+  choice.q = q;
+  choice.mean_stride = stride;
+  const auto heaviest = [](const std::vector<double>& weights) {
+    return *std::max_element(weights.begin(), weights.end());
+  };
+  if (heaviest(alone.weights.translation) > 0)
+    choice.ratio = heaviest(alone.weights.rotation) / heaviest(alone.weights.translation);
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "sum over strides, %.1f steps in the mean, one stride without motions across jumps: "
+                "spread %.3f deg, %.2f cm",
+                choice.mean_stride, alone.spread.rotation * degrees_per_radian,
+                100 * alone.spread.translation);
+  choice.reason = text;
+  return choice;
+}
+
 }  // namespace
 
 std::optional<WeightChoice> residual_weights(const StrideBlocks& blocks, Mode mode,
@@ -156,10 +177,14 @@ std::optional<WeightChoice> choose_weights(const StrideBlocks& blocks, const Tou
   auto [best, least] =
       smallest_spread(std::move(reference), std::move(with_memory), trial, seen, current, options);
   if (!std::isfinite(least.score)) return without_spread;
-  if (single && !single->is_refuted_by(best.q))
+  if (single && !single->is_refuted_by(best.q)) {
     best.beats_single =
         !single->refutes(best.q) &&
         single->is_beaten_by(least, best.mean_stride, current && current->beats_single, ladder, trial, seen);
+    if (const auto alone = single->without_jumps(ladder, trial, seen);
+        alone && (!best.beats_single || alone->spread.score < least.score - options.clearly))
+      return of_one_stride(*alone, rival->stride, alone->spread.T_a_b);
+  }
   best.reason = reason(best, least);
   return std::move(best);
 }
