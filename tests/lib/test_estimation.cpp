@@ -157,6 +157,7 @@ TEST(Estimation, OneStrideThatSpansJumpsDoesNotReplaceSumsThatDoNot) {
   }
 }
 
+/// Omitting a block omits every motion that touches it; the sum of the blocks is every motion once.
 TEST(Estimation, TheBlocksOfOverlappingMotionsAddUpToTheWhole) {
   Random random(1);
   StrideBlocks blocks(std::vector<int>{1, 3, 8});
