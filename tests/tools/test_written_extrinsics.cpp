@@ -47,6 +47,11 @@ TEST_F(WrittenExtrinsics, ADirectionThatIsNotObservableIsNamedInEveryFormat) {
     EXPECT_EQ(written.err, printed.err);
     EXPECT_EQ(read(path("answer")), printed.out);
   }
+  // beside the numbers, in the text and on the page
+  const std::string text = egocal("solve " + flat).out;
+  EXPECT_LT(text.find("\n  NOT OBSERVABLE, not a measurement: z\n"), text.find("T_b_a")) << text;
+  egocal("report " + flat + "--out " + path("page.html"));
+  EXPECT_THAT(read(path("page.html")), HasSubstr("<b>NOT OBSERVABLE, not a measurement: z</b>"));
   const Outcome nominal = egocal("solve " + flat + "--format urdf --nominal 0,0,1.25,1,0,0,0");
   EXPECT_THAT(nominal.err, HasSubstr("NOT OBSERVABLE, from the nominal value: z\n"));
   EXPECT_THAT(nominal.out, HasSubstr("NOT OBSERVABLE, from the nominal value: z; "));

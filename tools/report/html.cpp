@@ -63,7 +63,8 @@ std::string matrix_text(const Pose& T) {
   return text + fmt::format("{:12} {:12} {:12} {:12}\n", 0, 0, 0, 1);
 }
 
-std::string transform(const std::string& title, const Pose& given, const std::string& unit) {
+std::string transform(const std::string& title, const Pose& given, const std::string& unit,
+                      const std::string& not_shown = {}) {
   Pose T = with_positive_scalar(given);
   T.translation = without_negative_zeros(T.translation, 6);
   const Eigen::Vector3d& t = T.translation;
@@ -71,6 +72,7 @@ std::string transform(const std::string& title, const Pose& given, const std::st
   const Eigen::Vector3d angles =
       without_negative_zeros(roll_pitch_yaw(Eigen::Quaterniond(q)) * degrees_per_radian, 5);
   std::string table = "<table class='wide'>\n";
+  if (!not_shown.empty()) table += row("of these numbers", "<b>" + escaped(not_shown) + "</b>");
   table += row("translation x y z [" + unit + "]",
                fmt::format("<code>{:.6f} {:.6f} {:.6f}</code>", t.x(), t.y(), t.z()));
   table += row("quaternion w x y z",
@@ -196,9 +198,9 @@ std::string report_html(const ReportInput& input) {
     out += "<p>Lengths are in the " + escaped(input.unit) +
            ", also where m or cm is written: metres only if that sensor measures metres.</p>\n";
   if (input.samples) out += section("Samples", table_of_lines(input.samples->text));
-  out += section("Transform",
-                 transform(frames_of_answer(input.eye_to_hand).title, calibration.T_a_b, input.unit) +
-                     transform("T_b_a: its inverse", calibration.T_b_a, input.unit));
+  out += section("Transform", transform(frames_of_answer(input.eye_to_hand).title, calibration.T_a_b,
+                                        input.unit, not_shown_in_words(calibration)) +
+                                  transform("T_b_a: its inverse", calibration.T_b_a, input.unit));
   if (input.truth) {
     const ExtrinsicError error =
         extrinsic_error(to_dual_quaternion(*input.truth), to_dual_quaternion(calibration.T_a_b));

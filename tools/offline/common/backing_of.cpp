@@ -20,4 +20,10 @@ std::array<Backing, 6> backing_of(const Calibration& calibration) {
   return backing;
 }
 
+std::string not_shown_in_words(const Calibration& calibration) {
+  NamedExtrinsic extrinsic;
+  extrinsic.backing = backing_of(calibration);
+  return egocal::not_shown_in_words(extrinsic);
+}
+
 }  // namespace egocal::tools

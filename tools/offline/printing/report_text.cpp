@@ -162,6 +162,8 @@ std::string report_text(const SolveResult& result, const std::optional<Pose>& tr
                       optimality_text(calibration.certificate.optimality), result.method, result.solve_us);
   const std::string unit = unit_of_lengths(result);
   text += pose_text(frames_of_answer(result.eye_to_hand).title, calibration.T_a_b, unit);
+  if (const std::string not_shown = not_shown_in_words(calibration); !not_shown.empty())
+    text += "  " + not_shown + "\n";
   text += pose_text("T_b_a, its inverse", with_positive_scalar(calibration.T_b_a), unit);
   text += "\nmotions       " + motions_in_words(calibration) + "\n";
   text += outliers_text(calibration);
