@@ -26,7 +26,8 @@ class AppendCommand : public testing::RigCommand {
     camera.precision(17);
     camera << "camera=" << x << ",0.2,1.5," << q.w() << ',' << q.x() << ',' << q.y() << ',' << q.z();
     const Result made =
-        run("simulate --poses 1200 --roughness 0.3 --noise 0.01 --seed " + std::to_string(seed) +
+        run("simulate --poses 1200 --roughness 0.3 --seed " + std::to_string(seed) +
+            (options.find("--noise") == std::string::npos ? " --noise 0.01" : "") +
             " --sensor lidar=1,0,1.8,1,0,0,0 --sensor " + camera.str() + " " + options + " --out " + name);
     EXPECT_EQ(made.code, 0) << made.error;
     return " " + name + "/lidar.tum " + name + "/camera.tum";
@@ -89,6 +90,27 @@ TEST_F(AppendCommand, DrivesWhoseClocksWereSetAnewHaveAnOffsetEach) {
       run("solve --json" + first + " --append" + drive_of(4, 0) + " --time-offset auto").object();
   EXPECT_FALSE(one.contains("time_offsets"));
   EXPECT_NEAR(one["time_offset_s"].get<double>(), 0, 2e-3);
+}
+
+// Offsets that noise leaves uncertain by hundredths of a second, beside clocks that differ by far more.
+TEST_F(AppendCommand, NoisyDrivesHaveTheirOffsetsAndOneWithoutACertainOneIsRefused) {
+  const std::string first = drive_of(5, 0, "--noise 0.1"),
+                    second = drive_of(6, 0, "--noise 0.1 --clock-offset camera=0.3"),
+                    third = drive_of(7, 0, "--noise 1 --clock-offset camera=-0.2");
+  const std::string two = first + " --append" + second + " --time-offset auto";
+  const nlohmann::json found = run("solve --json" + two).object();
+  ASSERT_EQ(found["time_offsets"].size(), 2u) << found["reason"];
+  EXPECT_NEAR(found["time_offsets"][0]["seconds"].get<double>(), 0, 0.03);
+  EXPECT_NEAR(found["time_offsets"][1]["seconds"].get<double>(), -0.3, 0.03);
+  const Result refused = run("solve" + two + " --append" + third);
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_EQ(refused.out, "");
+  EXPECT_NE(refused.error.find("drive7/lidar.tum: the time offset of this drive is not certain ("),
+            std::string::npos)
+      << refused.error;
+  EXPECT_NE(refused.error.find("and the clocks of the other drives differ: leave it out\n"),
+            std::string::npos)
+      << refused.error;
 }
 
 // The same in a rig: the sensor's offsets are a note.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "egocal/calibrate.hpp"
 #include "egocal/io/extrinsic_text.hpp"

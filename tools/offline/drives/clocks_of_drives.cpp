@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -20,16 +21,24 @@ namespace {
 
 using Estimates = std::vector<std::optional<TimeOffset>>;
 
-bool differ(const TimeOffset& x, const TimeOffset& y, const ClockOptions& options) {
-  return is_another_clock(std::abs(x.seconds - y.seconds), std::hypot(x.stddev, y.stddev), options);
+/// Whether the estimate of a drive alone may tell it from others: no other offset fits it as well.
+bool is_certain(const TimeOffset& offset, const ClockOptions& options) {
+  return !offset.rival && is_trusted(offset, options);
 }
 
-bool any_differ(const Estimates& estimates, const ClockOptions& options) {
-  const auto trusted = [&](const std::optional<TimeOffset>& one) { return one && is_trusted(*one, options); };
+/// The largest difference [s] between the offsets of two drives, of those that are told apart for certain; 0
+/// where none are.
+double largest_difference(const Estimates& estimates, const ClockOptions& options) {
+  const auto certain = [&](const std::optional<TimeOffset>& one) { return one && is_certain(*one, options); };
+  double largest = 0;
   for (const std::optional<TimeOffset>& x : estimates)
-    for (const std::optional<TimeOffset>& y : estimates)
-      if (trusted(x) && trusted(y) && differ(*x, *y, options)) return true;
-  return false;
+    for (const std::optional<TimeOffset>& y : estimates) {
+      if (!certain(x) || !certain(y)) continue;
+      const double change = std::abs(x->seconds - y->seconds);
+      if (is_another_clock(change, std::hypot(x->stddev, y->stddev), options))
+        largest = std::max(largest, change);
+    }
+  return largest;
 }
 
 bool in_order(const Trajectory& trajectory) {
@@ -48,14 +57,16 @@ std::vector<ClockOfDrive> put_drives_on_clock_of_a(const Drives& drives, std::si
                                                                  : part;
   };
   Estimates estimates;
-  for (std::size_t k = 0; k < drives.size(); ++k) {
+  for (std::size_t k = 0; k < drives.size(); ++k)
     estimates.push_back(
         estimate_time_offset(lengths(reread(drives.part(a, k, sensor_a), options.read_a), Side::a),
                              lengths(reread(drives.part(b, k, sensor_b), options.read_b), Side::b),
                              {.max_gap = options.pairing.max_gap}));
-    if (estimates.back() && estimates.back()->rival) return {};
-  }
-  if (!any_differ(estimates, options.pairing.clock)) return {};
+  // each is compared with how far the drives differ instead
+  ClockOptions clock = options.pairing.clock;
+  clock.largest_stddev = std::numeric_limits<double>::infinity();
+  const double difference = largest_difference(estimates, clock);
+  if (!(difference > 0)) return {};
   std::vector<ClockOfDrive> result;
   Trajectory corrected;
   for (std::size_t k = 0; k < drives.size(); ++k) {
@@ -64,7 +75,7 @@ std::vector<ClockOfDrive> put_drives_on_clock_of_a(const Drives& drives, std::si
           fmt::format("{}: the time offset of this drive cannot be estimated, it is too short or never "
                       "turns, and the clocks of the other drives differ: leave it out",
                       drives.name(k)));
-    if (!is_trusted(*estimates[k], options.pairing.clock))
+    if (!is_certain(*estimates[k], clock) || !(clock.change_sigmas * estimates[k]->stddev < difference))
       throw Error(fmt::format(
           "{}: the time offset of this drive is not certain ({:.3f} s with a standard deviation of {:.3f} s "
           "and a correlation of {:.2f}), and the clocks of the other drives differ: leave it out",

@@ -19,12 +19,12 @@ struct ClockOfDrive {
   TimeOffset estimate;  ///< from this drive alone, corrected
 };
 
-/// Estimates the time offset of each drive from that drive alone. Where they differ, by the options by which
-/// a live clock is followed (PairingOptions::clock), the part of each drive in b is put on the clock of a,
-/// and the clocks are handed back, one for each drive; otherwise, and where the motion of a drive repeats so
-/// that another offset fits it as well, b is unchanged and the list is empty: one estimate serves all of
-/// them. Throws Error where the clocks of two drives differ and that of another cannot be estimated or is not
-/// certain. a, b: the streams of the sensors as they were read; options: how they are read and paired.
+/// Estimates the time offset of each drive from that drive alone. Where two of them differ for certain,
+/// compared with their standard deviations as a live clock is (PairingOptions::clock), the part of each drive
+/// in b is put on the clock of a, and the clocks are handed back, one for each drive. Otherwise b is
+/// unchanged and the list is empty: one estimate serves all of them. Throws Error where the clocks of two
+/// drives differ and that of another cannot be estimated or is not certain, as where its motion repeats. a,
+/// b: the streams of the sensors as they were read; options: how they are read and paired.
 std::vector<ClockOfDrive> put_drives_on_clock_of_a(const Drives& drives, std::size_t sensor_a,
                                                    std::size_t sensor_b, const Trajectory& a, Trajectory& b,
                                                    const CalibrationOptions& options);
