@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "answer_text.hpp"
 #include "egocal/microseconds.hpp"
@@ -44,6 +45,24 @@ bool rises_with_a_jump(const std::string& counter) {
                                            "rejected: " + std::string(to_string(Rejection::no_partner)),
                                            "rejected: " + std::string(to_string(Rejection::out_of_order))};
   return names.contains(counter);
+}
+
+/// Whether a player has sought, whenever that was.
+bool has_sought(const std::vector<ProcessState>& processes) {
+  return std::any_of(processes.begin(), processes.end(), [](const ProcessState& p) {
+    return p.status.role == bus::role_name(Role::player) && p.seeks > 0;
+  });
+}
+
+/// What was counted so far comes of a seek, or cannot be told from it.
+void excuse_all(ProcessState& process) {
+  for (auto& [name, tally] : process.tallies) {
+    const std::int64_t shown = tally.newest - tally.excused;
+    tally.excused = tally.newest;
+    (name == "lost" ? process.lost : process.rejected) -= shown;
+    std::erase_if(process.rejections,
+                  [&](const bus::Refusal& refusal) { return name == "rejected: " + refusal.reason; });
+  }
 }
 
 }  // namespace
@@ -122,7 +141,10 @@ void Model::watch_seeks(ProcessState& process, const status_t& message, bool is_
       counter == message.counters.end() ? 0 : std::clamp<std::int64_t>(counter->value, 0, most_counted);
   const std::int64_t more = seeks - process.seeks;
   process.seeks = seeks;
-  if (is_first || more <= 0) return;  // what it did before is of no concern
+  // what it did before this monitor came is of no concern, but for what the others have counted since
+  if (is_first && seeks > 0)
+    for (ProcessState& other : processes_) excuse_all(other);
+  if (is_first || more <= 0) return;
   for (PairState& pair : pairs_)
     interrupt(pair, Interruption::Kind::seek, static_cast<int>(std::min(more, most_jumps)), now);
 }
@@ -131,11 +153,12 @@ void Model::watch_seeks(ProcessState& process, const status_t& message, bool is_
 /// others.
 void Model::count_messages(ProcessState& process, const status_t& message, bool is_new, Now now) {
   process.in = process.out = process.lost = process.rejected = 0;
+  const bool sought = has_sought(processes_);
   for (const counter_t& counter : message.counters) {
     std::int64_t value = std::clamp(counter.value, -most_counted, most_counted);
     if (rises_with_a_jump(counter.name)) {
       ProcessState::Tally& tally = process.tallies[counter.name];
-      if (!is_new && now.mono_us < excused_mono_us_)
+      if (is_new ? sought : now.mono_us < excused_mono_us_)
         tally.excused += std::max<std::int64_t>(0, value - tally.newest);
       tally.newest = value;
       tally.excused = std::clamp<std::int64_t>(tally.excused, 0, std::max<std::int64_t>(0, value));

@@ -173,6 +173,37 @@ TEST_F(Interrupted, ASeekForwardsIsNoLoss) {
   EXPECT_EQ(process("egocal-pairing").lost, 6);
 }
 
+// What was counted before cannot be told from what the seek cost.
+TEST_F(Interrupted, AMonitorThatComesAfterASeekShowsNothingOfItAsLost) {
+  const auto heard = [](const PairDrive& late) {
+    for (const ProcessState& one : late.model.processes())
+      if (one.status.name == "egocal-pairing") return one;
+    throw std::runtime_error("pairing was not heard");
+  };
+  for (const bool player_first : {true, false}) {
+    count(player, "seeks", 1);
+    count(pairing, "lost", 1600);
+    count(pairing, "rejected: gap", 2);
+    PairDrive late;
+    if (player_first) late.heartbeat(player);
+    late.heartbeat(pairing);
+    if (!player_first) late.heartbeat(player);
+    EXPECT_EQ(heard(late).lost, 0) << player_first;
+    EXPECT_EQ(heard(late).rejected, 0) << player_first;
+    EXPECT_THAT(heard(late).rejections, IsEmpty()) << player_first;
+    late.run(60);
+    count(pairing, "lost", 1603);
+    late.heartbeat(pairing);
+    EXPECT_EQ(heard(late).lost, 3) << player_first;
+    EXPECT_EQ(heard(late).rejected, 0) << player_first;
+  }
+  count(player, "seeks", 0);
+  PairDrive without_a_seek;
+  without_a_seek.heartbeat(player);
+  without_a_seek.heartbeat(pairing);
+  EXPECT_EQ(heard(without_a_seek).lost, 1603);
+}
+
 // As pairing sends it: the motion across the seek is rejected.
 TEST_F(Interrupted, ASeekIsSeenInAProblemWithoutANewMotion) {
   count(player, "seeks", 1);
