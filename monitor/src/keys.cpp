@@ -9,6 +9,7 @@
 #include "egocal/microseconds.hpp"
 #include "egocal/monitor/layout.hpp"
 #include "egocal/monitor/view.hpp"
+#include "event_list.hpp"
 #include "panels.hpp"
 #include "selection.hpp"
 
@@ -93,7 +94,6 @@ class Cursor {
       : view_(view),
         model_(model),
         pairs_(static_cast<int>(model.pairs().size())),
-        events_(static_cast<int>(model.events().size())),
         page_(event_rows(layout_events(80, view.height).list.h)),
         list_(view.screen == Screen::events || view.screen == Screen::streams) {}
 
@@ -101,25 +101,26 @@ class Cursor {
   void down() { list_ ? scroll(-1) : select(view_.selected + 1); }
   void page_up() { list_ ? scroll(page_) : select(view_.selected - 10); }
   void page_down() { list_ ? scroll(-page_) : select(view_.selected + 10); }
-  void home() { list_ ? scroll(events_) : select(0); }
-  void end() { list_ ? scroll(-events_) : select(pairs_ - 1); }
+  void home() { list_ ? scroll(lines()) : select(0); }
+  void end() { list_ ? scroll(-lines()) : select(pairs_ - 1); }
   /// Selects the next pair or the one before, cyclically.
   void next(int step) { select(pairs_ ? (view_.selected + pairs_ + step) % pairs_ : 0); }
 
  private:
   void select(int index) { view_.selected = pairs_ ? std::clamp(index, 0, pairs_ - 1) : 0; }
-  void scroll(int lines) {
+  int lines() const {
+    return view_.screen == Screen::streams ? stream_line_count(model_, view_.width)
+                                           : event_line_count(model_, view_.width, view_.charset);
+  }
+  void scroll(int step) {
     // the newest event is at the bottom, the first stream at the top
-    if (view_.screen == Screen::streams)
-      view_.scroll =
-          std::clamp(view_.scroll - lines, 0, std::max(0, stream_line_count(model_, view_.width) - page_));
-    else
-      view_.scroll = std::clamp(view_.scroll + lines, 0, std::max(0, events_ - page_));
+    const int up = view_.screen == Screen::streams ? -step : step;
+    view_.scroll = std::clamp(view_.scroll + up, 0, std::max(0, lines() - page_));
   }
 
   ViewState& view_;
   const Model& model_;
-  int pairs_, events_, page_;
+  int pairs_, page_;
   bool list_;
 };
 

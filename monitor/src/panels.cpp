@@ -3,10 +3,15 @@
 #include "panels.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "answer_text.hpp"
 #include "egocal/bus/process.hpp"
+#include "event_list.hpp"
 
 namespace egocal::monitor {
 
@@ -115,11 +120,110 @@ void draw_processes(const Pane& pane, const Model& model, bool title, Charset ch
   }
 }
 
+namespace {
+
+// cells of an event
+constexpr int left_edge = 2, clock_cells = 8;
+constexpr int least_of_subject = 18, most_of_subject = 40;  // two names that are long
+constexpr int event_goes_on = 6;  // before a row that goes on, where there are no columns
+/// Of the text where time, subject and text have a column each: in fewer it would take more rows than below
+/// time and subject.
+constexpr int least_of_text = 40;
+
+int cells_of_subject(int width) {
+  return std::clamp(width / 4, least_of_subject, most_of_subject);
+}
+
+int column_of_text(int width) {
+  return left_edge + clock_cells + 2 + cells_of_subject(width) + 1;
+}
+
+std::string subject_in(const Event& event, int cells, Charset charset) {
+  const auto at = event.subject.find(" -> ");
+  return clean(at == std::string::npos
+                   ? event.subject
+                   : pair_in(event.subject.substr(0, at), event.subject.substr(at + 4), cells, charset),
+               most_of_subject);
+}
+
+std::string times_of(const Event& event) {
+  return event.repeated > 1 ? " (" + std::to_string(event.repeated) + " times)" : std::string();
+}
+
+Style style_of(const Event& event) {
+  switch (event.severity) {
+    case Severity::good:
+      return Style::good;
+    case Severity::warning:
+      return Style::warning;
+    case Severity::bad:
+      return Style::bad;
+    case Severity::info:
+      break;
+  }
+  return Style::normal;
+}
+
+/// A row of an event, as its text and where that begins; the first one with the event's time and subject.
+struct EventRow {
+  const Event* first_of = nullptr;
+  std::string text;
+  int x = left_edge;
+  Style style = Style::normal;
+};
+
+std::vector<EventRow> rows_of(const Event& event, int width, Charset charset) {
+  const int column = column_of_text(width);
+  const bool columns = width - column >= least_of_text;
+  std::string text = event.text + times_of(event);
+  if (!columns)  // the time is drawn before it
+    text = std::string(clock_cells + 1, ' ') + subject_in(event, most_of_subject, charset) + ": " + text;
+  const int x = columns ? column : left_edge, room = std::max(1, width - x - 1);
+  std::vector<EventRow> rows;
+  for (std::string& row : wrapped(text, static_cast<std::size_t>(room), columns ? 0 : event_goes_on))
+    rows.push_back({nullptr, std::move(row), x, style_of(event)});
+  if (rows.empty()) rows.push_back({nullptr, "", x, Style::normal});
+  rows.front().first_of = &event;
+  return rows;
+}
+
+}  // namespace
+
+int event_line_count(const Model& model, int width, Charset charset) {
+  std::size_t rows = 0;
+  for (const Event& event : model.events()) rows += rows_of(event, width, charset).size();
+  return static_cast<int>(rows);
+}
+
+void draw_whole_events(const Pane& pane, const Model& model, int scroll, int utc_offset_s, Charset charset) {
+  if (model.events().empty()) {
+    pane.text(left_edge, 0, "nothing has happened yet", Style::dim);
+    return;
+  }
+  // the last row first, as many as are looked at
+  std::vector<EventRow> rows;
+  const int wanted = std::max(0, scroll) + pane.height();
+  for (auto event = model.events().rbegin();
+       event != model.events().rend() && static_cast<int>(rows.size()) < wanted; ++event) {
+    std::vector<EventRow> more = rows_of(*event, pane.width(), charset);
+    rows.insert(rows.end(), std::make_move_iterator(more.rbegin()), std::make_move_iterator(more.rend()));
+  }
+  const int n = static_cast<int>(rows.size()), shown = std::min(n, pane.height());
+  const int below = std::clamp(scroll, 0, n - shown);
+  for (int y = 0; y < shown; ++y) {
+    const EventRow& row = rows[static_cast<std::size_t>(below + shown - 1 - y)];
+    pane.text(row.x, y, row.text, row.style);
+    if (!row.first_of) continue;
+    const int x = pane.text(left_edge, y, clock_time(row.first_of->at.wall_us, utc_offset_s), Style::dim) + 2;
+    if (row.x > left_edge)
+      pane.text(x, y, subject_in(*row.first_of, cells_of_subject(pane.width()), charset), Style::strong);
+  }
+}
+
 void draw_events(const Pane& pane, const Model& model, int scroll, int utc_offset_s, Charset charset) {
-  constexpr int most_of_subject = 40;  // cells: two names that are long
   const auto& events = model.events();
   if (events.empty()) {
-    pane.text(2, 0, "nothing has happened yet", Style::dim);
+    pane.text(left_edge, 0, "nothing has happened yet", Style::dim);
     return;
   }
   const int n = static_cast<int>(events.size());
@@ -127,21 +231,13 @@ void draw_events(const Pane& pane, const Model& model, int scroll, int utc_offse
   const int first = std::max(0, last - pane.height() + 1);
   for (int i = first; i <= last; ++i) {
     const Event& event = events[static_cast<std::size_t>(i)];
-    const Style style = event.severity == Severity::good      ? Style::good
-                        : event.severity == Severity::warning ? Style::warning
-                        : event.severity == Severity::bad     ? Style::bad
-                                                              : Style::normal;
-    int x = pane.text(2, i - first, clock_time(event.at.wall_us, utc_offset_s), Style::dim) + 2;
-    const int cells = std::clamp(pane.width() / 4, 18, most_of_subject);
-    std::string subject = event.subject;
-    if (const auto at = subject.find(" -> "); at != std::string::npos)
-      subject = pair_in(subject.substr(0, at), subject.substr(at + 4), cells, charset);
-    x = pane.text(x, i - first, pad_right(clean(subject, most_of_subject), cells), Style::strong) + 1;
-    const std::string times =
-        event.repeated > 1 ? " (" + std::to_string(event.repeated) + " times)" : std::string();
+    int x = pane.text(left_edge, i - first, clock_time(event.at.wall_us, utc_offset_s), Style::dim) + 2;
+    const int cells = cells_of_subject(pane.width());
+    x = pane.text(x, i - first, pad_right(subject_in(event, cells, charset), cells), Style::strong) + 1;
+    const std::string times = times_of(event);
     const int room = pane.width() - x - width_of(times);
     if (room < 1) continue;
-    x = pane.text(x, i - first, clean(event.text, static_cast<std::size_t>(room)), style);
+    x = pane.text(x, i - first, clean(event.text, static_cast<std::size_t>(room)), style_of(event));
     pane.text(x, i - first, times, Style::dim);
   }
 }

@@ -10,6 +10,7 @@
 #include "dialog.hpp"
 #include "egocal/bus/backing.hpp"
 #include "egocal/monitor/layout.hpp"
+#include "event_list.hpp"
 #include "panels.hpp"
 #include "selection.hpp"
 
@@ -242,12 +243,12 @@ void draw_event_screen(Canvas& canvas, const Model& model, const ViewState& view
   draw_keys(Pane(canvas, layout.keys), view);
   const Pane list(canvas, layout.list);
   if (event_rows(list.height()) == list.height()) {
-    draw_events(list, model, view.scroll, view.utc_offset_s, view.charset);
+    draw_whole_events(list, model, view.scroll, view.utc_offset_s, view.charset);
     return;
   }
   draw_title(list, "Events", view.charset);
-  draw_events(list.part({0, 1, list.width(), list.height() - 1}), model, view.scroll, view.utc_offset_s,
-              view.charset);
+  draw_whole_events(list.part({0, 1, list.width(), list.height() - 1}), model, view.scroll, view.utc_offset_s,
+                    view.charset);
 }
 
 void draw_stream_screen(Canvas& canvas, const Model& model, const ViewState& view) {

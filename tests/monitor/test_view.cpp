@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "egocal/monitor/view.hpp"
 #include "scene.hpp"
 
@@ -248,6 +250,35 @@ TEST_F(View, EventsScrollAPageAtATimeAndNoFurtherThanThereAre) {
   press(view, model, {Key::page_up});
   EXPECT_THAT(shown(Screen::events, 80, 20), HasSubstr("event 82."));
   EXPECT_THAT(shown(Screen::events, 80, 20), Not(HasSubstr("event 83.")));
+}
+
+TEST_F(View, TheScreenOfEventsShowsThemWhole) {
+  const std::string text =
+      "no global solver is alive: global solutions are computed here as well, and take longer than those "
+      "that the process of the global solver finds on another core.";
+  model = Model();
+  model.note(Severity::info, "lidar -> camera", "this was the very first one.", some_time);
+  for (int i = 0; i < 2; ++i) model.note(Severity::warning, "egocal-fast", text, some_time);
+  for (const int w : {20, 30, 40, 60, 80, 110, 200}) {
+    view.width = w;
+    view.height = 24;
+    std::istringstream words(std::string(w > 20 ? "egocal-fast " : "") + text + " (2 times)");
+    const std::string screen = shown(Screen::events, w, 24);
+    for (std::string word; words >> word;) EXPECT_THAT(screen, HasSubstr(word)) << w;
+    // its begin and its end can be reached where they are not on the screen
+    view.height = 6;
+    press(view, model, character('e'));
+    EXPECT_THAT(shown(Screen::events, w, 6), HasSubstr("times)")) << w;
+    press(view, model, {Key::home});
+    const std::string oldest = shown(Screen::events, w, 6);
+    EXPECT_THAT(oldest, HasSubstr("lidar →")) << w;
+    if (w > 80) continue;
+    press(view, model, {Key::down});
+    EXPECT_NE(shown(Screen::events, w, 6), oldest) << "the first step back is seen";
+    for (int i = 0; i < 40; ++i) press(view, model, {Key::down});
+    EXPECT_THAT(shown(Screen::events, w, 6), HasSubstr("times)")) << w;
+  }
+  EXPECT_THAT(shown(Screen::overview, 80, 24), HasSubstr("~")) << "a row each";
 }
 
 // Each key press shows less: windows that are longer than the session are passed over.
