@@ -60,6 +60,25 @@ void draw_summary(const Pane& pane, const PairState& pair, Charset charset) {
   }
 }
 
+namespace {
+
+/// Of all six directions, where the motions show each of them.
+const char* how_well_shown(const PairState& pair) {
+  if (!pair.verdict) return "shown, but not judged yet";
+  switch (pair.verdict->diagnosis.verdict) {
+    case Verdict::good:
+      return "the motions show everything";
+    case Verdict::incomplete:
+      return "shown, not yet exact enough";
+    case Verdict::doubtful:
+    case Verdict::contradictory:
+      break;
+  }
+  return "shown, but see the verdict";
+}
+
+}  // namespace
+
 void draw_observability(const Pane& pane, const PairState& pair, Charset charset) {
   const Symbols& s = symbols(charset);
   draw_title(pane, "Observability", charset);
@@ -96,7 +115,6 @@ void draw_observability(const Pane& pane, const PairState& pair, Charset charset
     pane.text(label_width + length + 1, y, pad_left(text, number_width),
               known || ground ? Style::dim : Style::bad);
   }
-  const bool all_known = !pair.verdict || pair.verdict->diagnosis.verdict != Verdict::incomplete;
   const std::string& hint = pair.shown.observability.hint;
   const std::string missing = missing_directions(pair);
   if (!hint.empty())
@@ -104,7 +122,7 @@ void draw_observability(const Pane& pane, const PairState& pair, Charset charset
   else if (!missing.empty())  // no motion would show them
     pane.text(2, 7, "neither stream measures " + missing, Style::warning);
   else
-    pane.text(2, 7, all_known ? "the motions show everything" : "shown, not yet exact enough", Style::dim);
+    pane.text(2, 7, how_well_shown(pair), Style::dim);
 }
 
 void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset charset) {

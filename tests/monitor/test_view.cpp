@@ -74,7 +74,25 @@ TEST_F(View, DetailHasBothSolversBothDirectionsAndFourCurves) {
   EXPECT_THAT(text, HasSubstr("R | t"));
   // (0.5, -0.5, 0.5, -0.5), turned by a little; and the way back
   EXPECT_THAT(text, ::testing::ContainsRegex("q wxyz +0\\.50.* -0\\.49.* 0\\.50.* -0\\.49"));
-  EXPECT_THAT(text, HasSubstr("the motions show everything"));
+}
+
+TEST_F(View, OnlyAVerdictSaysThatTheMotionsShowEverything) {
+  send([](problem_t&) {}, [](calibration_t& answer) { answer.stddev[0] = 124; });
+  EXPECT_THAT(shown(Screen::detail, 110, 42), Not(HasSubstr("the motions show everything")));
+  EXPECT_THAT(shown(Screen::detail, 110, 42), HasSubstr("shown, but not judged yet"));
+  for (const auto& [verdict, text] : {std::pair{Verdict::good, "the motions show everything"},
+                                      {Verdict::incomplete, "shown, not yet exact enough"},
+                                      {Verdict::doubtful, "shown, but see the verdict"},
+                                      {Verdict::contradictory, "shown, but see the verdict"}}) {
+    Diagnosis diagnosis;
+    diagnosis.verdict = verdict;
+    diagnosis.reason = "a reason";
+    const verdict_t message = test::verdict_at(diagnosis, test::begin_utime, test::begin_utime, step);
+    const bus::Checked<bus::ReceivedVerdict> received = bus::to_verdict(message);
+    ASSERT_TRUE(received) << received.reason;
+    model.on_verdict(message, *received.value, some_time);
+    EXPECT_THAT(shown(Screen::detail, 110, 42), HasSubstr(text));
+  }
 }
 
 TEST_F(View, WhatTheMotionsDoNotShowIsSaid) {
