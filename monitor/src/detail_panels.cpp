@@ -7,6 +7,7 @@
 #include "answer_text.hpp"
 #include "egocal/microseconds.hpp"
 #include "egocal/monitor/plot.hpp"
+#include "number_cells.hpp"
 #include "panels.hpp"
 
 namespace egocal::monitor {
@@ -38,8 +39,7 @@ void draw_summary(const Pane& pane, const PairState& pair, Charset charset) {
   for (int row = 0; row < 2; ++row) {
     std::string text = row == 0 ? "t" : "R";
     for (int i = 3 * row; i < 3 * row + 3; ++i)
-      text +=
-          pad_left(number(values[static_cast<std::size_t>(i)] * scale_of(i), row == 0 ? 1 : 2, charset), 8);
+      text += in_cells(values[static_cast<std::size_t>(i)] * scale_of(i), row == 0 ? 1 : 2, 8, charset);
     text += " " + std::string(s.plus_minus) +
             number(largest_stddev(pair.shown, static_cast<std::size_t>(3 * row)) * scale_of(3 * row),
                    row == 0 ? 1 : 2, charset);
@@ -108,10 +108,11 @@ void draw_observability(const Pane& pane, const PairState& pair, Charset charset
     const int full = static_cast<int>(std::lround(filled * length));
     for (int k = 0; k < length; ++k)
       pane.text(label_width + k, y, k < full ? s.bar_full : s.bar_empty, k < full ? style : Style::dim);
-    const std::string text =
-        ground   ? "plane"
-        : !known ? "not shown"
-                 : s.plus_minus + (i < 3 ? centimetres(stddev, charset) : degrees(stddev, charset));
+    const std::string text = ground   ? "plane"
+                             : !known ? "not shown"
+                             : i < 3  ? distance_in(number_width, s.plus_minus + centimetres(stddev, charset),
+                                                    stddev, charset, s.plus_minus)
+                                      : s.plus_minus + degrees(stddev, charset);
     pane.text(label_width + length + 1, y, pad_left(text, number_width),
               known || ground ? Style::dim : Style::bad);
   }
@@ -166,6 +167,7 @@ void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset char
     const std::string mark = &solver == pair.counted_solver() ? s.cursor : " ";
     column.text(0, 1, mark + (indent ? " " : "") + short_solver(solver.name), solver_style(solver.role));
     int row = 2;
+    const int cells = column.width() - indent;
     const auto value = [&](const std::string& text, Style style = Style::normal) {
       column.text(indent, row++, text, style);
     };
@@ -176,14 +178,16 @@ void draw_solvers(const Pane& pane, const PairState& pair, Now now, Charset char
     else
       value(answer.status == 1 ? "no" : "undecided", answer.status == 1 ? Style::bad : Style::warning);
     value(compact(answer.scaled_gap, charset));
-    value(centimetres(referenced ? own.error_translation : largest_stddev(own, 0), charset));
+    const double off = referenced ? own.error_translation : largest_stddev(own, 0);
+    value(distance_in(cells, centimetres(off, charset), off, charset));
     value(degrees(referenced ? own.error_rotation : largest_stddev(own, 3), charset));
     if (transforms) {
       const std::array<double, 6> values = components(own.T_a_b);
       for (int i = 0; i < 6; ++i) {
         const double v = values[static_cast<std::size_t>(i)];
         const std::string unit = i < 3 ? " cm" : charset == Charset::unicode ? "°" : indent ? " deg" : "";
-        value(own.valid ? number(v * scale_of(i), i < 3 ? 2 : 3, charset) + unit : "-");
+        const std::string text = number(v * scale_of(i), i < 3 ? 2 : 3, charset) + unit;
+        value(!own.valid ? "-" : i < 3 ? distance_in(cells, text, v, charset) : text);
       }
     }
     value(compact(answer.cost, charset));
@@ -208,38 +212,29 @@ void draw_direction(const Pane& pane, const PairState& pair, bool inverted, bool
   }
   const Pose T = inverted ? inverse(pair.shown.T_a_b) : pair.shown.T_a_b;
   const int w = pane.width();
-  const int cell = w >= 48 ? 10 : 8, start = 8;
-  const auto row = [&](int y, const char* label, const std::vector<std::string>& values, const char* unit) {
+  constexpr int start = 8, wide = 10, narrow = 8;  // cells
+  const bool roomy = w >= start + 4 * wide;
+  const auto row = [&](int y, const char* label, const std::vector<double>& values, int decimals,
+                       const char* unit) {
     pane.text(1, y, label, Style::dim);
+    const int room = (w - start) / static_cast<int>(values.size()),
+              cell = roomy ? wide : std::clamp(room, 6, narrow);
     int x = start;
-    for (const std::string& value : values) {
-      pane.text(x, y, pad_left(value, cell));
-      x += cell;
-    }
+    for (const double value : values) x = pane.text(x, y, in_cells(value, decimals, cell, charset));
     pane.text(x + 1, y, unit, Style::dim);
   };
-  const Eigen::Vector3d t = T.translation, rpy = roll_pitch_yaw(T.rotation);
+  const Eigen::Vector3d t = T.translation * centimetres_per_metre,
+                        rpy = roll_pitch_yaw(T.rotation) * degrees_per_radian;
   const Eigen::Quaterniond& q = T.rotation;
-  const int fine = cell - 4;  // decimals of what lies between -1 and 1
-  row(1, "x y z",
-      {number(t.x() * centimetres_per_metre, 2, charset), number(t.y() * centimetres_per_metre, 2, charset),
-       number(t.z() * centimetres_per_metre, 2, charset)},
-      "cm");
-  row(2, "q wxyz",
-      {number(q.w(), fine, charset), number(q.x(), fine, charset), number(q.y(), fine, charset),
-       number(q.z(), fine, charset)},
-      "");
-  row(3, "r p y",
-      {number(rpy.x() * degrees_per_radian, 3, charset), number(rpy.y() * degrees_per_radian, 3, charset),
-       number(rpy.z() * degrees_per_radian, 3, charset)},
-      symbols(charset).degree);
+  // decimals of what lies between -1 and 1
+  const int fine = (roomy ? wide : std::clamp((w - start) / 4, 6, narrow)) - 4;
+  row(1, "x y z", {t.x(), t.y(), t.z()}, 2, "cm");
+  row(2, "q wxyz", {q.w(), q.x(), q.y(), q.z()}, fine, "");
+  row(3, "r p y", {rpy.x(), rpy.y(), rpy.z()}, 3, symbols(charset).degree);
   if (!matrix) return;
   const Eigen::Matrix3d R = T.rotation.toRotationMatrix();
   for (int i = 0; i < 3; ++i)
-    row(4 + i, i == 0 ? "R | t" : "",
-        {number(R(i, 0), fine, charset), number(R(i, 1), fine, charset), number(R(i, 2), fine, charset),
-         number(t(i), fine, charset)},
-        i == 0 ? "m" : "");
+    row(4 + i, i == 0 ? "R | t" : "", {R(i, 0), R(i, 1), R(i, 2), T.translation(i)}, fine, i == 0 ? "m" : "");
 }
 
 void draw_curve(const Pane& pane, const PairState& pair, int curve, const ViewState& view) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "answer_text.hpp"
+#include "number_cells.hpp"
 #include "panels.hpp"
 
 namespace egocal::monitor {
@@ -74,17 +75,23 @@ void draw_transform(const Pane& pane, int y, const PairState& pair, Charset char
   const std::array<double, 6> values = components(pair.shown.T_a_b);
   for (int row = 0; row < 2; ++row) {
     pane.text(4, y + row, row == 0 ? "translation" : "rotation", Style::dim);
-    int x = 17;
+    int x = 17, end = x;
     for (int i = 3 * row; i < 3 * row + 3; ++i) {
-      pane.text(x, y + row, pad_left(direction_names[i], 5), Style::dim);
+      pane.text(x + 5 - width_of(direction_names[i]), y + row, direction_names[i], Style::dim);
       const auto d = static_cast<std::size_t>(i);
       const bool known = shown_by_motion(pair.shown, i) || from_ground(pair, i);
-      pane.text(x + 5, y + row, pad_left(number(values[d] * scale_of(i), 2, charset), 8),
+      pane.text(x + 5, y + row, in_cells(values[d] * scale_of(i), 2, 8, charset),
                 known ? Style::strong : Style::bad);
-      pane.text(x + 14, y + row, pad_right(spread(pair, i, 2, charset), 6), known ? Style::dim : Style::bad);
+      std::string spread_text = spread(pair, i, 2, charset);
+      if (width_of(spread_text) > 6) spread_text = spread(pair, i, 1, charset);
+      if (width_of(spread_text) > 7)
+        spread_text = s.plus_minus + power_of_ten(pair.shown.observability.stddev[d] * scale_of(i));
+      end = pane.text(x + 14, y + row, spread_text, known ? Style::dim : Style::bad);
       x += 20;
     }
-    pane.text(x, y + row, row == 0 ? "cm" : s.degree, Style::dim);
+    const std::string unit = row == 0 ? "cm" : s.degree;
+    pane.text(std::max({x, end, std::min(end + 1, pane.width() - width_of(unit))}), y + row, unit,
+              Style::dim);
   }
 }
 

@@ -3,12 +3,13 @@
 // The table of all pairs: one row a pair, its columns as layout_pair_table() places them.
 #include <algorithm>
 #include <array>
-#include <cstdio>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "answer_text.hpp"
+#include "number_cells.hpp"
 #include "panels.hpp"
 
 namespace egocal::monitor {
@@ -82,17 +83,6 @@ const char* heading_of(PairColumn column, ErrorKind error, Charset charset) {
   return "";
 }
 
-/// A number with as many decimals as leave a blank before it, or as a power of ten: a part of a number is
-/// another one.
-std::string in_cells(double value, int decimals, int cells, Charset charset) {
-  for (int shown = decimals; shown >= 0; --shown)
-    if (const std::string text = number(value, shown, charset); width_of(text) < cells)
-      return pad_left(text, cells);
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.0e", value);
-  return pad_left(text.data(), cells);
-}
-
 /// Three components of the transform, from x or from roll on, with the largest of their standard deviations.
 std::string three_components(const PairState& pair, int from, Charset charset) {
   if (!pair.shown.valid) return "-";
@@ -107,20 +97,32 @@ std::string three_components(const PairState& pair, int from, Charset charset) {
                 charset);
 }
 
+/// "0.287deg" where "0.287 deg" is too wide, and without the unit where that is: no part of a unit.
+std::string angle_in(int cells, std::string text) {
+  const std::size_t blank = text.find(' ');
+  if (width_of(text) <= cells || blank == std::string::npos) return text;
+  const std::string alone = text.substr(0, blank);
+  text.erase(blank, 1);
+  return width_of(text) <= cells ? text : alone;
+}
+
 /// The cell of a column that needs an answer.
-Cell cell_of_answer(const PairState& pair, const calibration_t& answer, PairColumn column, Now now,
+Cell cell_of_answer(const PairState& pair, const calibration_t& answer, const PlacedColumn& placed, Now now,
                     Charset charset) {
+  const PairColumn column = placed.column;
+  const int width = placed.width;
   const Symbols& s = symbols(charset);
   const bool has_reference = pair.shown.reference != ReferenceKind::none;
   switch (column) {
-    case PairColumn::error_translation:
-      return {has_reference ? centimetres(pair.shown.error_translation, charset)
-                            : s.plus_minus + centimetres(largest_stddev(pair.shown, 0), charset),
-              Style::strong};
-    case PairColumn::error_rotation:
-      return {has_reference ? degrees(pair.shown.error_rotation, charset)
-                            : s.plus_minus + degrees(largest_stddev(pair.shown, 3), charset),
-              Style::strong};
+    case PairColumn::error_translation: {
+      const std::string before = has_reference ? "" : s.plus_minus;
+      const double off = has_reference ? pair.shown.error_translation : largest_stddev(pair.shown, 0);
+      return {distance_in(width, before + centimetres(off, charset), off, charset, before), Style::strong};
+    }
+    case PairColumn::error_rotation: {
+      const double off = has_reference ? pair.shown.error_rotation : largest_stddev(pair.shown, 3);
+      return {angle_in(width, (has_reference ? "" : s.plus_minus) + degrees(off, charset)), Style::strong};
+    }
     case PairColumn::proof:
       return {answer.status == 0 ? "proven" : answer.status == 1 ? "no" : "?", proof_of(answer).style};
     case PairColumn::solver:
@@ -159,7 +161,7 @@ std::optional<Cell> cell_of(const PairState& pair, const PlacedColumn& placed, b
   if (column == PairColumn::motions)
     return Cell{count(answer ? answer->pairs : pair.has_problem ? pair.problem.matched : 0)};
   if (!answer) return std::nullopt;
-  return cell_of_answer(pair, *answer, column, now, charset);
+  return cell_of_answer(pair, *answer, placed, now, charset);
 }
 
 void draw_cell(const Pane& pane, int y, const PlacedColumn& column, const Cell& cell) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <sstream>
 
 #include "egocal/monitor/view.hpp"
@@ -181,6 +182,54 @@ TEST_F(View, NoNumberLosesADigit) {
          });
     EXPECT_THAT(shown(Screen::overview, 160, 8), HasSubstr(text));
   }
+}
+
+TEST_F(View, LargeDistancesStandApartAndKeepTheirUnits) {
+  const std::string number = " +-?[0-9][0-9.e+]*", row = number + number + number;
+  for (const double metres : {502.2346, -502.2346, 999.9, -1234.567}) {
+    send([](problem_t&) {},
+         [=](calibration_t& answer) {
+           answer.pos[0] = metres;
+           answer.pos[1] = 181.2268;
+           answer.pos[2] = metres;
+           answer.stddev[0] = answer.stddev[2] = std::abs(metres);
+         });
+    for (const auto& [w, h] : {std::pair{76, 24}, {80, 24}, {110, 42}}) {
+      const std::string detail = shown(Screen::detail, w, h);
+      EXPECT_THAT(detail, ::testing::ContainsRegex("x y z" + row + " +cm +x y z" + row + " +cm")) << w;
+      EXPECT_THAT(detail, ::testing::ContainsRegex("error t +[0-9.e+]+ c?m +[0-9.e+]+ c?m")) << w;
+      EXPECT_THAT(detail, ::testing::ContainsRegex("±[0-9]+(\\.[0-9])? c?m\n")) << w;
+    }
+    EXPECT_THAT(shown(Screen::detail, 40, 8), ::testing::ContainsRegex("t" + row + " ±[0-9.e+]+ cm"));
+    EXPECT_THAT(shown(Screen::overview, 60, 10), ::testing::ContainsRegex("[0-9] c?m +[0-9]")) << "error";
+    EXPECT_THAT(shown(Screen::overview, 110, 30),
+                ::testing::ContainsRegex("x" + number + " ±[0-9.e+]+ +y" + number + " ±[0-9.]+ +z" + number +
+                                         " ±[0-9.e+]+ cm"));
+  }
+  for (const Charset charset : {Charset::unicode, Charset::ascii}) {
+    view.charset = charset;
+    send([](problem_t& p) { p.has_truth = p.has_prior = 0; },
+         [](calibration_t& answer) { answer.stddev[0] = 576.15; });
+    EXPECT_THAT(shown(Screen::overview, 60, 10),
+                HasSubstr(charset == Charset::unicode ? " ±57615 cm " : " +-576.1 m "));
+  }
+  for (const Charset charset : {Charset::unicode, Charset::ascii}) {
+    view.charset = charset;
+    send([](problem_t&) {},
+         [](calibration_t& answer) {
+           answer.stddev[0] = 124;
+           answer.stddev[2] = 1300;
+         });
+    EXPECT_THAT(shown(Screen::overview, 80, 24),
+                ::testing::ContainsRegex("(±|[+]-)12400 +y .* (±|[+]-)1e[+]05 ?cm"));
+    EXPECT_THAT(shown(Screen::overview, 80, 24),
+                ::testing::ContainsRegex("yaw .* (±|[+]-)[0-9.]+(°| °|deg)"));
+    EXPECT_THAT(shown(Screen::overview, 60, 10), ::testing::ContainsRegex(" [0-9.]+(°|deg)[ \n]"));
+  }
+  // the last part of the quaternion was cut at 76 to 79 columns
+  EXPECT_THAT(shown(Screen::detail, 76, 24),
+              ::testing::ContainsRegex(
+                  "q wxyz( +-?[0-9]\\.[0-9][0-9][0-9]){4} +q wxyz( +-?[0-9]\\.[0-9][0-9][0-9]){4}"));
 }
 
 TEST_F(View, AStrideThatIsNotInForceIsNotShown) {
