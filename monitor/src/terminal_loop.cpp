@@ -11,8 +11,22 @@
 #include "egocal/bus/loop.hpp"
 #include "egocal/monitor/view.hpp"
 #include "first_view.hpp"
+#include "selection.hpp"
 
 namespace egocal::monitor {
+
+namespace {
+
+/// A view that is paused shows the calibration of then; what is asked is about that of now.
+void ask_of_the_present(ViewState& view, const Model& seen, const Model& model) {
+  if (view.dialog != Dialog::pause && view.dialog != Dialog::resume) return;
+  const PairState* pair = selected_pair(seen, view);
+  for (const PairState& now : model.pairs())
+    if (pair && now.a == pair->a && now.b == pair->b)
+      view.dialog = pair_is_paused(model, now) ? Dialog::resume : Dialog::pause;
+}
+
+}  // namespace
 
 int run_terminal(const ProgramOptions& options, Model& model, Source& source,
                  std::unique_ptr<Terminal> terminal) {
@@ -48,6 +62,7 @@ int run_terminal(const ProgramOptions& options, Model& model, Source& source,
     while (const auto key = terminal->key()) {
       const Model& seen = still ? *still : model;
       const Action action = press(view, seen, *key);
+      ask_of_the_present(view, seen, model);
       if (action.kind == Action::Kind::quit) return 0;
       if (action.kind != Action::Kind::none) carry_out(action, seen, view, source);
       noticed = mono;

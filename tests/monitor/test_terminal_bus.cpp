@@ -172,6 +172,19 @@ TEST(Terminal, FollowsRealProcessesThroughPauseResetAndDeath) {
   tmux.keys("y");
   ASSERT_TRUE(until([&] { return !tmux.shows("PAUSED") && tmux.shows("egocal-pairing   running"); }))
       << tmux.screen();
+  // a paused view shows what was, and asks about what is
+  tmux.keys("Space");
+  ASSERT_TRUE(until([&] { return tmux.shows("VIEW PAUSED"); })) << tmux.screen();
+  for (const char* question : {"Pause the calibration", "Resume the calibration"}) {
+    tmux.keys("p");
+    ASSERT_TRUE(until([&] { return tmux.shows(question); })) << tmux.screen();
+    tmux.keys("y");
+    ASSERT_TRUE(until([&] { return tmux.shows(" sent"); })) << tmux.screen();
+    std::this_thread::sleep_for(2s);  // two heartbeats: they say so, too
+  }
+  tmux.keys("Space");
+  ASSERT_TRUE(until([&] { return !tmux.shows("PAUSED") && tmux.shows("egocal-pairing   running"); }))
+      << tmux.screen();
   tmux.keys("r");
   tmux.keys("y");
   ASSERT_TRUE(until([&] { return tmux.shows("session reset, as asked for"); })) << tmux.screen();
