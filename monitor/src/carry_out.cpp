@@ -55,11 +55,12 @@ void carry_out(const Action& action, const Model& model, ViewState& view, Source
     try {
       const std::string file =
           write_export(action.a, action.b, action.format, extrinsic_text(*extrinsic, action.format));
-      view.notice = "wrote " + file +
-                    (pair->old > 0          ? " (an old answer: not to be used)"
-                     : !extrinsic->usable   ? " (not to be used)"
-                     : extrinsic->certified ? ""
-                                            : " (not certified)");
+      // before the name, which may be longer than the screen is wide
+      view.notice = std::string(pair->old > 0          ? "an old answer, not to be used: "
+                                : !extrinsic->usable   ? "not to be used: "
+                                : extrinsic->certified ? ""
+                                                       : "not certified: ") +
+                    "wrote " + file;
     } catch (const Error& error) {
       view.notice = error.what();
     }

@@ -109,6 +109,13 @@ TEST(Terminal, KeysAskBeforeTheyCommand) {
         << tmux.screen();
     EXPECT_THAT(read_text(tmux.folder() / file), HasSubstr("lidar")) << file;
   }
+  source.signal(SIGKILL);
+  ASSERT_TRUE(until([&] { return tmux.shows(" 2 old"); })) << tmux.screen();
+  tmux.keys("x");
+  tmux.keys("y");
+  ASSERT_TRUE(until([&] {
+    return tmux.shows("an old answer, not to be used: wrote extrinsic_lidar_camera1-3.yaml");
+  })) << tmux.screen();
   tmux.keys("?");
   ASSERT_TRUE(until([&] { return tmux.shows("the best fit to the motions"); }));
   tmux.keys("q");  // closes the help, no more
