@@ -64,6 +64,25 @@ Text text_of(const PairState* pair, const ViewState& view, int width, int height
   return {};
 }
 
+/// A question on a screen that is too small for sentences: the pair, and the keys.
+Text short_text_of(const PairState& pair, const ViewState& view, int width) {
+  const std::string which = pair_in(pair.a, pair.b, width - 1, view.charset) + "?";
+  switch (view.dialog) {
+    case Dialog::reset:
+      return {"Reset", {which, "y yes", "other key no"}};
+    case Dialog::pause:
+      return {"Pause", {which, "y yes", "other key no"}};
+    case Dialog::resume:
+      return {"Resume", {which, "y yes", "other key no"}};
+    case Dialog::export_format:
+      return {"Export", {which, "y YAML  r ROS", "u URDF  k Kalibr"}};
+    case Dialog::help:
+    case Dialog::none:
+      break;
+  }
+  return {};
+}
+
 /// The lines broken at blanks, where there is one, into rows of this width.
 std::vector<std::string> rows_of(const std::vector<std::string>& lines, int width) {
   std::vector<std::string> out;
@@ -99,8 +118,10 @@ void draw_dialog(Canvas& canvas, const PairState* pair, const ViewState& view) {
   if (view.dialog == Dialog::none) return;
   Text text = text_of(pair, view, canvas.width(), canvas.height());
   text.lines = rows_of(text.lines, canvas.width() - 4);
-  // what must be read does not give way to blank lines
-  if (static_cast<int>(text.lines.size()) + 2 > canvas.height()) std::erase(text.lines, "");
+  // what must be read does not give way to blank lines, nor to whole sentences
+  const auto fits = [&] { return static_cast<int>(text.lines.size()) + 2 <= canvas.height(); };
+  if (!fits()) std::erase(text.lines, "");
+  if (!fits() && pair && view.dialog != Dialog::help) text = short_text_of(*pair, view, canvas.width() - 4);
   int wanted = 0;
   for (const std::string& line : text.lines) wanted = std::max(wanted, width_of(line));
   const Rect box =

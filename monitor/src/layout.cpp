@@ -75,17 +75,24 @@ std::vector<PlacedColumn> layout_pair_table(int width) {
   };
   // from left to right
   constexpr Wish wishes[] = {{PairColumn::name, 16, 1},          {PairColumn::verdict, 15, 0},
-                             {PairColumn::proof, 7, 4},          {PairColumn::error_translation, 9, 2},
-                             {PairColumn::error_rotation, 8, 3}, {PairColumn::translation, 29, 8},
+                             {PairColumn::proof, 7, 5},          {PairColumn::error_translation, 9, 3},
+                             {PairColumn::error_rotation, 8, 4}, {PairColumn::translation, 29, 8},
                              {PairColumn::rotation, 29, 9},      {PairColumn::gap, 8, 10},
-                             {PairColumn::motions, 7, 5},        {PairColumn::solver, 10, 6},
+                             {PairColumn::motions, 7, 6},        {PairColumn::solver, 10, 7},
                              {PairColumn::solve, 7, 11},         {PairColumn::verify, 7, 12},
-                             {PairColumn::latency, 7, 13},       {PairColumn::age, 6, 7}};
+                             {PairColumn::latency, 7, 13},       {PairColumn::age, 6, 2}};
+  // without room for both the verdict is cut: it is known by its begin, a pair only by its name
+  constexpr int whole_name = 16, whole_verdict = 15, enough_of_name = 10, least = 8;
+  if (width < 2 + whole_name + whole_verdict && width >= 2 + 2 * least) {
+    const int verdict = std::clamp(width - 2 - enough_of_name, least, whole_verdict),
+              name = width - 2 - verdict;
+    return {{PairColumn::name, 1, name}, {PairColumn::verdict, 2 + name, verdict}};
+  }
   std::array<bool, std::size(wishes)> chosen{};
   int used = 1;  // the cursor's column
   for (int rank = 0; rank < static_cast<int>(std::size(wishes)); ++rank)
     for (std::size_t i = 0; i < std::size(wishes); ++i)
-      if (wishes[i].rank == rank && used + wishes[i].width + 1 <= width) {
+      if (wishes[i].rank == rank && used + wishes[i].width <= width) {
         chosen[i] = true;
         used += wishes[i].width + 1;
       }
@@ -95,7 +102,7 @@ std::vector<PlacedColumn> layout_pair_table(int width) {
     if (!chosen[i]) continue;
     int w = wishes[i].width;
     if (wishes[i].column == PairColumn::name)
-      w += std::min(20, width - used);  // names take what is left over
+      w += std::clamp(width - used, 0, 20);  // names take what is left over
     columns.push_back({wishes[i].column, x, w});
     x += w + 1;
   }

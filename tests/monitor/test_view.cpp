@@ -454,6 +454,28 @@ TEST_F(View, DialogsAreWholeOnSmallScreens) {
   }
 }
 
+TEST_F(View, AQuestionNamesItsPairAndItsKeysOnTheSmallestScreens) {
+  for (const Dialog dialog : {Dialog::reset, Dialog::pause, Dialog::resume, Dialog::export_format}) {
+    view.dialog = dialog;
+    const std::string text = shown(Screen::overview, 20, 5);
+    EXPECT_THAT(text, HasSubstr("lidar → camera?"));
+    if (dialog == Dialog::export_format)
+      for (const char* key : {"y YAML", "r ROS", "u URDF", "k Kalibr"}) EXPECT_THAT(text, HasSubstr(key));
+    else
+      for (const char* key : {"y yes", "other key no"}) EXPECT_THAT(text, HasSubstr(key));
+  }
+}
+
+TEST_F(View, ARowHasANameOnTheSmallestScreensAndAnAgeAt40Columns) {
+  model.on_problem(test::problem_at("lidar", "radar", 1, 10), some_time);
+  for (const int w : {20, 24, 30, 33}) {
+    const std::string text = shown(Screen::overview, w, 5);
+    EXPECT_THAT(text, ::testing::ContainsRegex("l[~idar]+ → c[~amer]+a +not jud")) << w;
+    EXPECT_THAT(text, ::testing::ContainsRegex("l[~idar]+ → r[~ad]+a?r +solving")) << w;
+  }
+  for (const int w : {40, 41, 48, 60, 80}) EXPECT_THAT(shown(Screen::overview, w, 8), HasSubstr(" now")) << w;
+}
+
 TEST_F(View, NothingIsCommandedWithoutAYes) {
   for (char key : {'r', 'p'})
     for (char answer : {'n', 'r', 'p', 'q', ' ', '?'}) {
