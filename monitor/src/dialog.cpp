@@ -19,11 +19,23 @@ struct Text {
   std::vector<std::string> lines;
 };
 
+/// The keys one behind the other, in rows of this width.
+std::vector<std::string> all_keys_in(int width) {
+  std::vector<std::string> rows;
+  for (const std::string key :
+       {"q quit", "Enter detail", "Esc back", "n N pair", "up dn choose", "e events", "s streams", "+ - zoom",
+        "l axes", "x export", "r reset", "p pause", "spc pause view", "^L redraw", "^Z suspend"}) {
+    const std::string between = "  ";
+    if (rows.empty() || width_of(rows.back() + between + key) > width)
+      rows.push_back(key);
+    else
+      rows.back() += between + key;
+  }
+  return rows;
+}
+
 Text help(const ViewState& view, int width, int height) {
-  if (width < 66 || height < 16)
-    return {"Keys",
-            {"q quit         Enter detail", "n N pair       Esc   overview", "+ - zoom       e     events",
-             "l   axes       x     export", "r   reset      p     pause", "spc pause view ^L    redraw"}};
+  if (width < 66 || height < 16) return {"Keys", all_keys_in(width - 4)};
   return {"Keys",
           {"q        quit                      Enter    detail of the pair",
            "up down  choose a pair, scroll     Esc      back to the overview",

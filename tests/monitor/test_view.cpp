@@ -441,7 +441,9 @@ TEST_F(View, DialogsAreWholeOnSmallScreens) {
     Dialog dialog;
     std::vector<std::string> parts;
   } dialogs[] = {
-      {Dialog::help, {"q quit", "n N pair", "+ - zoom", "r   reset", "spc pause view", "^L    redraw"}},
+      {Dialog::help,
+       {"q quit", "n N pair", "up dn choose", "s streams", "+ - zoom", "r reset", "spc pause view",
+        "^L redraw", "^Z suspend"}},
       {Dialog::reset, {"Forget all motions", "camera?", "y  yes", "any other key  no"}},
       {Dialog::pause,
        {"Pause the calibration", "camera?", "Motions in the meantime", "y  yes", "any other key  no"}},
