@@ -196,9 +196,16 @@ bool moved_if_inverted(const Finding& finding) {
   return finding.code == "inverted_both" && finding.time && finding.improvement > 1;
 }
 
+/// Headings that may wander, at no constant rate: how far that moves the answer is in its standard
+/// deviations.
+bool wanders(const Finding& finding) {
+  return finding.code.starts_with("turning_drift_") && !finding.certain && !finding.value;
+}
+
 /// Another answer that fits as well makes this one doubtful, unless it is the usual price of one more
 /// unknown.
 bool casts_doubt(const Finding& finding) {
+  if (wanders(finding)) return false;
   if (moved_if_inverted(finding)) return true;
   return finding.code != "inverted_both" && finding.code != "reversed_steps" && finding.code != "scale" &&
          finding.code != "clock_offset" && finding.code != "clock_drift";
