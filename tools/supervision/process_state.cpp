@@ -9,8 +9,10 @@
 #include <chrono>
 #include <csignal>
 #include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -39,10 +41,8 @@ std::chrono::nanoseconds processor_time(pid_t pid) {
   return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
 }
 
-}  // namespace
-
-Activity activity(pid_t pid) {
-  std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+Activity activity_of_thread(const std::filesystem::path& file) {
+  std::ifstream stat(file);
   std::string text;
   std::getline(stat, text);
   const std::size_t name_end = text.rfind(") ");
@@ -58,6 +58,21 @@ Activity activity(pid_t pid) {
     default:
       return Activity::waits;
   }
+}
+
+}  // namespace
+
+Activity activity(pid_t pid) {
+  std::error_code gone;  // a process may end meanwhile
+  Activity most = Activity::waits;
+  const std::string threads = "/proc/" + std::to_string(pid) + "/task";
+  for (std::filesystem::directory_iterator thread(threads, gone), end; !gone && thread != end;
+       thread.increment(gone)) {
+    const Activity doing = activity_of_thread(thread->path() / "stat");
+    if (doing == Activity::computes) return doing;  // another one may wait for its result
+    if (most == Activity::waits) most = doing;
+  }
+  return most;
 }
 
 void add_work_of(pid_t pid, Work& work) {

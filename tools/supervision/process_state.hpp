@@ -18,6 +18,7 @@ enum class Activity {
   disk,      ///< waits for its disk
   stopped,
 };
+/// Of several threads that of one that computes counts: the others may wait for its result.
 Activity activity(pid_t pid);
 
 /// Adds what this process does; -1: none runs.
