@@ -114,8 +114,8 @@ bool all_have(const Digits& digits, const Numbers& numbers, const WrittenDigitsO
   return looked >= options.fewest;
 }
 
-/// Whether numbers that have so many significant digits could have had more by their decimals. 0.004 has one
-/// digit by three decimals, too.
+/// Whether the significant digits say more than the decimals do: some numbers have room for more digits and
+/// do not use it. 0.004 says nothing, as three decimals leave it one digit.
 template <typename Numbers>
 bool tell_more_than_decimals(const Digits& digits, const Numbers& numbers,
                              const WrittenDigitsOptions& options) {
